@@ -1,0 +1,24 @@
+//! Where a bake runs.
+
+pub mod cpu;
+#[cfg(feature = "gpu")]
+pub mod gpu;
+
+use crate::error::Result;
+use crate::ops::normal::NormalPlan;
+use crate::stream::{CodeSink, HeightBands};
+
+/// Runs operations. One required method for each: a missing twin is a compile error.
+pub(crate) trait Backend: Send + Sync {
+    /// What runs, for reports: `cpu, 2 threads, avx512`.
+    fn name(&self) -> String;
+
+    /// Rows of a band that suit this backend.
+    fn band_rows(&self, plan: &NormalPlan) -> usize;
+
+    /// Bakes all bands of a height map into the rows of a normal map.
+    ///
+    /// # Errors
+    /// What the bands or the sink report, or [`crate::Error::Device`].
+    fn normal(&self, plan: &NormalPlan, bands: &mut dyn HeightBands, sink: &mut dyn CodeSink) -> Result<()>;
+}

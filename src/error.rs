@@ -1,0 +1,112 @@
+//! One error type, by cause.
+
+use std::path::PathBuf;
+
+/// What a fallible call of this crate returns.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Why a bake did not happen.
+///
+/// Every message names what was wrong, with its value, and what would have been right.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// An option or a size is outside its range.
+    #[error("{parameter} is {value}: it must be {range}")]
+    Parameter {
+        /// The parameter, as the command line and the documentation name it.
+        parameter: &'static str,
+        /// The value that was given.
+        value: String,
+        /// The values that it may take.
+        range: String,
+    },
+
+    /// A height is NaN or infinite: it has no slope.
+    #[error(
+        "the height at column {x}, row {y} is {value}: heights must be finite numbers; \
+         replace it in the map, or export the map without no-data texels"
+    )]
+    NotFinite {
+        /// Column of the texel, from 0 on the left.
+        x: usize,
+        /// Row of the texel, from 0 at the top.
+        y: usize,
+        /// The height that was found.
+        value: f32,
+    },
+
+    /// The operating system refused to read or write.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The system's own reason.
+        source: std::io::Error,
+    },
+
+    /// A file was read, but it holds no height map that can be used as it was asked.
+    #[error("{}: {reason}; {remedy}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+        /// The way out.
+        remedy: String,
+    },
+
+    /// A file claims a size above the limit; nothing was allocated for it.
+    #[error(
+        "{}: the header claims {width} x {height} texels, {bytes} bytes decoded, above the limit of {limit}; \
+         raise it with --max-bytes if the file is what it claims", path.display()
+    )]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Texels in a row, as the header claims.
+        width: u64,
+        /// Rows, as the header claims.
+        height: u64,
+        /// Bytes that decoding needs in memory at once.
+        bytes: u64,
+        /// The limit in bytes.
+        limit: u64,
+    },
+
+    /// A GPU could not be used, or failed during a job.
+    #[error("{adapter}: {reason}")]
+    Device {
+        /// The adapter, or what was asked for.
+        adapter: String,
+        /// What happened.
+        reason: String,
+    },
+
+    /// The bake was stopped from outside.
+    #[error("stopped before it was complete; no file was left under its final name")]
+    Cancelled,
+}
+
+impl Error {
+    /// A parameter outside its range.
+    pub(crate) fn parameter(parameter: &'static str, value: impl ToString, range: impl Into<String>) -> Self {
+        Self::Parameter { parameter, value: value.to_string(), range: range.into() }
+    }
+
+    /// The system's reason, with the file it concerns.
+    pub(crate) fn io(path: impl Into<PathBuf>) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.into();
+        move |source| Self::Io { path, source }
+    }
+
+    /// A file that cannot be used, why, and what to do about it.
+    pub(crate) fn file(path: impl Into<PathBuf>, reason: impl ToString, remedy: impl Into<String>) -> Self {
+        Self::File { path: path.into(), reason: reason.to_string(), remedy: remedy.into() }
+    }
+
+    /// A GPU that cannot do the job.
+    pub(crate) fn device(adapter: impl Into<String>, reason: impl ToString) -> Self {
+        Self::Device { adapter: adapter.into(), reason: reason.to_string() }
+    }
+}

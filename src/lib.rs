@@ -1,0 +1,19 @@
+//! texbake bakes height maps into normal maps, on a GPU or a CPU: the same bytes on both.
+
+mod backend;
+mod baker;
+mod error;
+mod exact;
+pub mod io;
+mod map;
+mod ops;
+pub mod stream;
+
+pub use baker::{Baker, Device, Ran, devices};
+pub use error::{Error, Result};
+pub use exact::{AxisScale, Rational, Scale};
+pub use map::{
+    Channels, Codes, CodesMut, CodesRef, Convention, Depth, Edge, Edges, Encoding, Grid, HeightDepth, HeightMap,
+    Heights, HeightsMut, NormalFormat, NormalMap, Size,
+};
+pub use ops::normal::{Filter, NormalOptions, Precision};

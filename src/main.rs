@@ -1,0 +1,2 @@
+//! texbake
+fn main() {}

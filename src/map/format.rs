@@ -1,0 +1,212 @@
+//! What the numbers of a map mean.
+
+use crate::error::{Error, Result};
+use std::fmt;
+
+/// How a component v in [-1, 1] becomes a code of b bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Encoding {
+    /// code = floor(L (v + 1) / 2 + 1/2), L = 2^b - 1: what PNG and every engine expect.
+    #[default]
+    Unorm,
+    /// code = the nearest integer to L v, L = 2^(b-1) - 1, in two's complement. The code -2^(b-1) is never written.
+    Snorm,
+    /// The snorm code plus 2^(b-1), in an unsigned channel: 128 is exactly 0 (Schüler's sign expansion).
+    Biased,
+    /// The component itself.
+    Float,
+}
+
+/// How a code is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Depth {
+    /// 8-bit integers.
+    #[default]
+    Bits8,
+    /// 16-bit integers.
+    Bits16,
+    /// IEEE binary16, for [`Encoding::Float`].
+    Float16,
+    /// IEEE binary32, for [`Encoding::Float`].
+    Float32,
+}
+
+/// Which components a normal map stores.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Channels {
+    /// All three.
+    #[default]
+    Xyz,
+    /// x and y; the reader rebuilds z = sqrt(1 - x^2 - y^2) (FGED2 eq. 7.44).
+    Xy,
+}
+
+/// Which way the green component points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Convention {
+    /// Up the image: y is negated before it is rounded. glTF, OpenGL, Blender, Unity.
+    #[default]
+    Gl,
+    /// Down the image rows: DirectX, Unreal.
+    Dx,
+}
+
+/// What lies beyond the border of a map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Edge {
+    /// The opposite border: the map tiles.
+    #[default]
+    Wrap,
+    /// The border texel again.
+    Clamp,
+    /// The map reflected at its border texel, which is not repeated: texel -1 is texel 1.
+    Mirror,
+}
+
+/// The edge of each axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Edges {
+    /// Left and right.
+    pub x: Edge,
+    /// Top and bottom.
+    pub y: Edge,
+}
+
+/// What the codes of a normal map mean.
+///
+/// The default is what PNG normal maps hold almost everywhere: 8-bit unorm, three components, green up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct NormalFormat {
+    /// How a component becomes a code.
+    pub encoding: Encoding,
+    /// How a code is stored: 8 or 16 bits for the integer encodings, a float for [`Encoding::Float`].
+    pub depth: Depth,
+    /// Which components there are.
+    pub channels: Channels,
+    /// Which way green points.
+    pub convention: Convention,
+}
+
+impl Encoding {
+    /// The largest code L of a depth of integers, for v = 1 (before biased adds its offset).
+    ///
+    /// `None` if the encoding and the depth do not go together.
+    pub fn greatest_code(self, depth: Depth) -> Option<u32> {
+        let bits = match depth {
+            Depth::Bits8 => 8,
+            Depth::Bits16 => 16,
+            Depth::Float16 | Depth::Float32 => return None,
+        };
+        match self {
+            Self::Unorm => Some((1 << bits) - 1),
+            Self::Snorm | Self::Biased => Some((1 << (bits - 1)) - 1),
+            Self::Float => None,
+        }
+    }
+}
+
+impl Depth {
+    /// Bytes of one code.
+    pub fn bytes(self) -> usize {
+        match self {
+            Self::Bits8 => 1,
+            Self::Bits16 | Self::Float16 => 2,
+            Self::Float32 => 4,
+        }
+    }
+
+    /// Whether codes are floats.
+    pub fn is_float(self) -> bool {
+        matches!(self, Self::Float16 | Self::Float32)
+    }
+}
+
+impl Channels {
+    /// Components per texel.
+    pub fn count(self) -> usize {
+        match self {
+            Self::Xyz => 3,
+            Self::Xy => 2,
+        }
+    }
+}
+
+impl Edge {
+    /// The texel that stands for texel `i` of an axis of `n` texels, for -1 <= i <= n.
+    ///
+    /// An axis of one texel is its own neighbour under every edge.
+    pub(crate) fn resolve(self, i: isize, n: usize) -> usize {
+        debug_assert!(-1 <= i && i <= n as isize && n > 0);
+        let last = n as isize - 1;
+        let inside = match self {
+            Self::Wrap => i.rem_euclid(n as isize),
+            Self::Clamp => i.clamp(0, last),
+            Self::Mirror => (last - (last - i.abs()).abs()).max(0),
+        };
+        inside as usize
+    }
+}
+
+impl Edges {
+    /// The same edge on both axes.
+    pub fn both(edge: Edge) -> Self {
+        Self { x: edge, y: edge }
+    }
+}
+
+impl NormalFormat {
+    /// Fails if the encoding and the depth do not go together.
+    pub(crate) fn check(&self) -> Result<()> {
+        if (self.encoding == Encoding::Float) == self.depth.is_float() {
+            return Ok(());
+        }
+        let range = match self.encoding {
+            Encoding::Float => "16f or 32f for the encoding float",
+            _ => "8 or 16 for the encodings unorm, snorm and biased",
+        };
+        Err(Error::parameter("bits", self.depth, range))
+    }
+}
+
+/// Names of the variants, as the command line and reports write them.
+macro_rules! display_as {
+    ($($type:ident { $($variant:ident = $name:literal),* })*) => {$(
+        impl fmt::Display for $type {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(match self { $(Self::$variant => $name),* })
+            }
+        }
+    )*};
+}
+
+display_as! {
+    Encoding { Unorm = "unorm", Snorm = "snorm", Biased = "biased", Float = "float" }
+    Depth { Bits8 = "8", Bits16 = "16", Float16 = "16f", Float32 = "32f" }
+    Channels { Xyz = "xyz", Xy = "xy" }
+    Convention { Gl = "gl", Dx = "dx" }
+    Edge { Wrap = "wrap", Clamp = "clamp", Mirror = "mirror" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Edge::{Clamp, Mirror, Wrap};
+
+    #[test]
+    fn edges_resolve_one_texel_beyond_each_border() {
+        for (edge, n, before, after) in [
+            (Wrap, 5, 4, 0),
+            (Clamp, 5, 0, 4),
+            (Mirror, 5, 1, 3),
+            (Wrap, 2, 1, 0),
+            (Clamp, 2, 0, 1),
+            (Mirror, 2, 1, 0),
+            (Wrap, 1, 0, 0),
+            (Clamp, 1, 0, 0),
+            (Mirror, 1, 0, 0),
+        ] {
+            assert_eq!(edge.resolve(-1, n), before, "{edge} before {n}");
+            assert_eq!(edge.resolve(n as isize, n), after, "{edge} after {n}");
+            assert_eq!(edge.resolve(n as isize - 1, n), n - 1, "{edge} inside {n}");
+        }
+    }
+}

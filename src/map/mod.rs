@@ -1,0 +1,13 @@
+//! Maps with what their numbers mean attached.
+
+mod codes;
+mod format;
+mod grid;
+mod height;
+mod normal;
+
+pub use codes::{Codes, CodesMut, CodesRef};
+pub use format::{Channels, Convention, Depth, Edge, Edges, Encoding, NormalFormat};
+pub use grid::{Grid, Size};
+pub use height::{HeightDepth, HeightMap, Heights, HeightsMut};
+pub use normal::NormalMap;

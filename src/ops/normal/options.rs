@@ -1,0 +1,66 @@
+//! What a user can choose.
+
+use crate::exact::Scale;
+use crate::map::{Edges, NormalFormat};
+use std::fmt;
+
+/// How a height map becomes a normal map.
+///
+/// The default: one texel of height, central differences, edges that wrap, an 8-bit unorm map with green up, `exact`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct NormalOptions {
+    /// How high h = 1 is.
+    pub scale: Scale,
+    /// The slope stencil.
+    pub filter: Filter,
+    /// What lies beyond the borders.
+    pub edges: Edges,
+    /// What the codes of the normal map shall mean.
+    pub format: NormalFormat,
+    /// Exact bytes, or speed.
+    pub precision: Precision,
+}
+
+/// The slope stencil: differences of the texels on either side, weighted over three rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Filter {
+    /// Central differences, one row: sharpest (FGED2 eq. 7.41).
+    #[default]
+    Central,
+    /// Weights 1, 2, 1.
+    Sobel,
+    /// Weights 3, 10, 3: the most even in all directions.
+    Scharr,
+    /// Weights 1, 1, 1: the smoothest.
+    Prewitt,
+}
+
+/// Exact bytes, or speed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Precision {
+    /// The same bytes on every backend; for integer heights the correctly rounded ones.
+    #[default]
+    Exact,
+    /// Native floats: a code may be its neighbour.
+    Fast,
+}
+
+impl fmt::Display for Filter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Central => "central",
+            Self::Sobel => "sobel",
+            Self::Scharr => "scharr",
+            Self::Prewitt => "prewitt",
+        })
+    }
+}
+
+impl fmt::Display for Precision {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Exact => "exact",
+            Self::Fast => "fast",
+        })
+    }
+}

@@ -1,0 +1,129 @@
+//! The options resolved for one map: the constants that every backend computes with.
+
+use super::{Filter, NormalOptions, Precision};
+use crate::error::Result;
+use crate::exact::AxisScale;
+use crate::map::{Convention, Edges, HeightDepth, NormalFormat, Size};
+
+/// A slope stencil as data.
+///
+/// The sum over three rows (for the slope along x; columns for y) of `weight * (right - left)`, where the middle row
+/// weighs `centre` and the other two `outer`; the slope per texel is that sum over [`Stencil::divisor`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Stencil {
+    pub centre: i32,
+    pub outer: i32,
+}
+
+impl Stencil {
+    /// D of DESIGN 3.1: the two sides are two texels apart.
+    pub fn divisor(self) -> i32 {
+        2 * (self.centre + 2 * self.outer)
+    }
+}
+
+impl From<Filter> for Stencil {
+    fn from(filter: Filter) -> Self {
+        let (centre, outer) = match filter {
+            Filter::Central => (1, 0),
+            Filter::Sobel => (2, 1),
+            Filter::Scharr => (10, 3),
+            Filter::Prewitt => (1, 1),
+        };
+        Self { centre, outer }
+    }
+}
+
+/// From the stencil sums Gx, Gy of integer codes to the normal (X, Y, Z) / sqrt(X^2 + Y^2 + Z^2).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct IntegerSlope {
+    /// X = px Gx, below 2^44.
+    pub px: i32,
+    /// Y = py Gy, below 2^44; its sign holds the convention.
+    pub py: i32,
+    /// Z, above zero, below 2^45.
+    pub z: i64,
+}
+
+/// From the stencil sums of heights over 64 to the slopes over 2^64.
+///
+/// The two powers of two keep every sum and slope of finite f32 heights finite; they cost no accuracy, since slopes
+/// below 2^-25 count as zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct FloatSlope {
+    pub kx: f32,
+    pub ky: f32,
+}
+
+/// How heights become slopes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Slope {
+    Integer(IntegerSlope),
+    Float(FloatSlope),
+}
+
+/// One bake, ready for a backend.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct NormalPlan {
+    pub size: Size,
+    pub depth: HeightDepth,
+    pub stencil: Stencil,
+    pub edges: Edges,
+    pub slope: Slope,
+    pub format: NormalFormat,
+    pub precision: Precision,
+    /// The scale that the bake really uses.
+    pub scale: AxisScale,
+}
+
+impl NormalPlan {
+    /// Checks the options and resolves them for a map.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] names the option that is out of range.
+    pub fn new(options: &NormalOptions, size: Size, depth: HeightDepth) -> Result<Self> {
+        options.format.check()?;
+        let scale = options.scale.resolve(size)?;
+        let stencil = Stencil::from(options.filter);
+        // The normal leans away from the slope (eq. 7.43); green up turns y around again.
+        let y = match options.format.convention {
+            Convention::Gl => scale.y,
+            Convention::Dx => -scale.y,
+        };
+        let slope = match depth.greatest_code() {
+            Some(greatest) => Slope::Integer(IntegerSlope::new(-scale.x, y, scale.q, stencil, greatest)),
+            None => Slope::Float(FloatSlope::new(-scale.x, y, scale.q, stencil)),
+        };
+        let NormalOptions { edges, format, precision, .. } = *options;
+        Ok(Self { size, depth, stencil, edges, slope, format, precision, scale })
+    }
+
+    /// Codes of one row.
+    pub fn row_codes(&self) -> usize {
+        self.size.width() * self.format.channels.count()
+    }
+}
+
+impl IntegerSlope {
+    /// (X, Y, Z) = (x Gx, y Gy, q D M) without the factor that they share.
+    fn new(x: i32, y: i32, q: u32, stencil: Stencil, greatest_height: u32) -> Self {
+        let z = i64::from(q) * i64::from(stencil.divisor()) * i64::from(greatest_height);
+        let common = [x, y].map(|part| i64::from(part.unsigned_abs())).into_iter().fold(z, gcd);
+        let part = |part: i32| (i64::from(part) / common) as i32;
+        Self { px: part(x), py: part(y), z: z / common }
+    }
+}
+
+impl FloatSlope {
+    fn new(x: i32, y: i32, q: u32, stencil: Stencil) -> Self {
+        let per_sum = |part: i32| {
+            let exact_enough = f64::from(part) / (f64::from(q) * f64::from(stencil.divisor()));
+            exact_enough as f32 * (2f32.powi(6) * 2f32.powi(-64))
+        };
+        Self { kx: per_sum(x), ky: per_sum(y) }
+    }
+}
+
+fn gcd(a: i64, b: i64) -> i64 {
+    if b == 0 { a } else { gcd(b, a % b) }
+}

@@ -1,0 +1,227 @@
+//! Bands of a map that is read row by row, on a thread of its own.
+
+use super::band::{Band, HeightBand, HeightBands};
+use super::channel::{Recycling, recycling};
+use crate::error::Result;
+use crate::map::{Edge, Grid, HeightDepth, HeightMap, HeightsMut, Size};
+use std::thread::JoinHandle;
+
+/// A height map that is read from the top.
+pub trait RowSource: Send {
+    /// Width and height.
+    fn size(&self) -> Size;
+
+    /// How a height is stored.
+    fn depth(&self) -> HeightDepth;
+
+    /// Reads the next rows: as many as `rows` has room for, never more than are left.
+    ///
+    /// # Errors
+    /// The reason that the file gives; [`crate::Error::NotFinite`] for a height that has no slope.
+    fn read(&mut self, rows: HeightsMut<'_>) -> Result<()>;
+
+    /// Reads the last row and goes back to the first: what a map that wraps needs before anything else.
+    ///
+    /// # Errors
+    /// As [`RowSource::read`].
+    fn read_last_row(&mut self, row: HeightsMut<'_>) -> Result<()>;
+}
+
+/// Bands in flight besides the one in use: one being read, one waiting.
+const BUFFERS: usize = 3;
+
+/// The bands of a [`RowSource`]; a thread reads ahead.
+#[derive(Debug)]
+pub struct BandReader {
+    bands: Recycling<BandBuffer>,
+    current: Option<BandBuffer>,
+    thread: Option<JoinHandle<Result<()>>>,
+}
+
+impl BandReader {
+    /// Reads `source` in bands of `band_rows` rows; `edge` says what lies above the first row and below the last.
+    pub fn new(source: Box<dyn RowSource>, edge: Edge, band_rows: usize) -> Self {
+        assert!(band_rows > 0, "a band has rows");
+        let (bands, mut filled) = recycling(BUFFERS);
+        let read_all = move || {
+            let mut cutter = BandCutter::new(source, edge)?;
+            while let Some(buffer) = filled.take() {
+                let buffer = buffer.unwrap_or_else(|| cutter.buffer(band_rows));
+                match cutter.next(buffer, band_rows)? {
+                    Some(band) => filled.send(band),
+                    None => break,
+                }
+            }
+            Ok(())
+        };
+        let thread = std::thread::Builder::new().name("texbake read".into()).spawn(read_all);
+        Self { bands, current: None, thread: Some(thread.expect("the system starts a thread")) }
+    }
+}
+
+impl HeightBands for BandReader {
+    fn next(&mut self) -> Result<Option<HeightBand<'_>>> {
+        if let Some(used) = self.current.take() {
+            self.bands.give_back(used);
+        }
+        self.current = self.bands.receive();
+        if self.current.is_none()
+            && let Some(thread) = self.thread.take()
+        {
+            thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+        }
+        Ok(self.current.as_ref().map(BandBuffer::band))
+    }
+}
+
+/// Cuts rows into bands; consecutive bands share two rows, which are read once.
+struct BandCutter {
+    source: Box<dyn RowSource>,
+    edge: Edge,
+    next_row: usize,
+    /// The row before the next band and the next band's first row.
+    carried: Vec<u8>,
+    /// The rows that a map that wraps needs at its other end.
+    first_row: Vec<u8>,
+    last_row: Vec<u8>,
+}
+
+impl BandCutter {
+    fn new(mut source: Box<dyn RowSource>, edge: Edge) -> Result<Self> {
+        let mut last_row = Vec::new();
+        if edge == Edge::Wrap {
+            let mut row = BandBuffer::new(source.size().width(), source.depth(), 1);
+            source.read_last_row(row.rows_mut(0, 1))?;
+            last_row = row.slot(0).to_vec();
+        }
+        Ok(Self { source, edge, next_row: 0, carried: Vec::new(), first_row: Vec::new(), last_row })
+    }
+
+    fn buffer(&self, band_rows: usize) -> BandBuffer {
+        let size = self.source.size();
+        BandBuffer::new(size.width(), self.source.depth(), band_rows.min(size.height()) + 2)
+    }
+
+    /// Fills `buffer`, whose slot k holds row `first - 1 + k`, with the next band.
+    fn next(&mut self, mut buffer: BandBuffer, band_rows: usize) -> Result<Option<BandBuffer>> {
+        let (first, height) = (self.next_row, self.source.size().height());
+        let count = band_rows.min(height - first);
+        if count == 0 {
+            return Ok(None);
+        }
+        buffer.body_rows = count;
+        let known = self.carried.len() / buffer.row_bytes();
+        buffer.bytes_mut()[..self.carried.len()].copy_from_slice(&self.carried);
+        let (from, to) = if first == 0 {
+            (1, (count + 1).min(height) + 1)
+        } else {
+            (known, count + 1 + usize::from(first + count < height))
+        };
+        if from < to {
+            self.source.read(buffer.rows_mut(from, to - from))?;
+        }
+        if first == 0 {
+            self.first_row = buffer.slot(1).to_vec();
+            let above = self.edge.resolve(-1, height);
+            let row = if self.edge == Edge::Wrap { self.last_row.clone() } else { buffer.slot(above + 1).to_vec() };
+            buffer.slot_mut(0).copy_from_slice(&row);
+        }
+        if first + count == height {
+            let below = self.edge.resolve(height as isize, height);
+            let row =
+                if self.edge == Edge::Wrap { self.first_row.clone() } else { buffer.slot(below + 1 - first).to_vec() };
+            buffer.slot_mut(count + 1).copy_from_slice(&row);
+        }
+        let carried = count * buffer.row_bytes()..(count + 2) * buffer.row_bytes();
+        self.carried = buffer.bytes()[carried].to_vec();
+        self.next_row = first + count;
+        Ok(Some(buffer))
+    }
+}
+
+/// Rows of heights in one piece, aligned for every height type.
+#[derive(Debug)]
+struct BandBuffer {
+    width: usize,
+    depth: HeightDepth,
+    body_rows: usize,
+    words: Vec<u32>,
+}
+
+impl BandBuffer {
+    fn new(width: usize, depth: HeightDepth, rows: usize) -> Self {
+        let words = (rows * width * depth.bytes()).div_ceil(4);
+        Self { width, depth, body_rows: rows, words: vec![0; words] }
+    }
+
+    fn row_bytes(&self) -> usize {
+        self.width * self.depth.bytes()
+    }
+
+    fn bytes(&self) -> &[u8] {
+        bytemuck::cast_slice(&self.words)
+    }
+
+    fn bytes_mut(&mut self) -> &mut [u8] {
+        bytemuck::cast_slice_mut(&mut self.words)
+    }
+
+    fn slot(&self, index: usize) -> &[u8] {
+        &self.bytes()[index * self.row_bytes()..][..self.row_bytes()]
+    }
+
+    fn slot_mut(&mut self, index: usize) -> &mut [u8] {
+        let bytes = self.row_bytes();
+        &mut self.bytes_mut()[index * bytes..][..bytes]
+    }
+
+    fn rows_mut(&mut self, first: usize, count: usize) -> HeightsMut<'_> {
+        let (bytes, depth) = (self.row_bytes(), self.depth);
+        let rows = &mut self.bytes_mut()[first * bytes..][..count * bytes];
+        match depth {
+            HeightDepth::U8 => HeightsMut::U8(rows),
+            HeightDepth::U16 => HeightsMut::U16(bytemuck::cast_slice_mut(rows)),
+            HeightDepth::F32 => HeightsMut::F32(bytemuck::cast_slice_mut(rows)),
+        }
+    }
+
+    fn band(&self) -> HeightBand<'_> {
+        fn cut<T: bytemuck::Pod>(buffer: &BandBuffer) -> Band<'_, T> {
+            let bytes = &buffer.bytes()[..(buffer.body_rows + 2) * buffer.row_bytes()];
+            let (above, rest) = bytemuck::cast_slice(bytes).split_at(buffer.width);
+            let (body, below) = rest.split_at(buffer.body_rows * buffer.width);
+            Band { width: buffer.width, above, body, below }
+        }
+        match self.depth {
+            HeightDepth::U8 => HeightBand::U8(cut(self)),
+            HeightDepth::U16 => HeightBand::U16(cut(self)),
+            HeightDepth::F32 => HeightBand::F32(cut(self)),
+        }
+    }
+}
+
+/// Reads a whole map.
+///
+/// # Errors
+/// As [`RowSource::read`].
+pub fn read_map(source: &mut dyn RowSource) -> Result<HeightMap> {
+    let size = source.size();
+    let (width, height) = (size.width(), size.height());
+    match source.depth() {
+        HeightDepth::U8 => {
+            let mut heights = vec![0; size.texels()];
+            source.read(HeightsMut::U8(&mut heights))?;
+            Ok(Grid::new(width, height, heights)?.into())
+        }
+        HeightDepth::U16 => {
+            let mut heights = vec![0; size.texels()];
+            source.read(HeightsMut::U16(&mut heights))?;
+            Ok(Grid::new(width, height, heights)?.into())
+        }
+        HeightDepth::F32 => {
+            let mut heights = vec![0.0; size.texels()];
+            source.read(HeightsMut::F32(&mut heights))?;
+            Grid::new(width, height, heights)?.try_into()
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Rows of codes that leave for a file, on a thread of its own.
+
+use super::channel::{Filling, recycling};
+use crate::error::{Error, Result};
+use crate::map::{Codes, CodesMut, CodesRef, Depth};
+use std::thread::JoinHandle;
+
+/// Takes the codes of a map from a backend, from the top.
+pub trait CodeSink {
+    /// Lets `fill` write the codes of the next `rows` rows.
+    ///
+    /// # Errors
+    /// What `fill` returns, or what an earlier row met on its way out.
+    fn write(&mut self, rows: usize, fill: &mut dyn FnMut(&mut CodesMut<'_>) -> Result<()>) -> Result<()>;
+}
+
+/// A map that is written from the top.
+pub trait RowSink: Send {
+    /// Writes the next rows.
+    ///
+    /// # Errors
+    /// The system's or the format's reason.
+    fn write(&mut self, rows: CodesRef<'_>) -> Result<()>;
+
+    /// Completes the file under its final name. Without this call there is no file.
+    ///
+    /// # Errors
+    /// The system's or the format's reason.
+    fn finish(self: Box<Self>) -> Result<()>;
+}
+
+/// Bands on their way out: one being filled, one waiting, one being written.
+const BUFFERS: usize = 3;
+
+/// Writes to a [`RowSink`] on a thread while the backend computes the next rows.
+pub struct CodeWriter {
+    depth: Depth,
+    row_codes: usize,
+    filling: Option<Filling<Codes>>,
+    thread: Option<JoinHandle<Result<Box<dyn RowSink>>>>,
+}
+
+impl CodeWriter {
+    /// Writes rows of `row_codes` codes of `depth` to `sink`.
+    pub fn new(mut sink: Box<dyn RowSink>, depth: Depth, row_codes: usize) -> Self {
+        let (full, filling) = recycling::<Codes>(BUFFERS);
+        let write_all = move || {
+            while let Some(codes) = full.receive() {
+                sink.write(codes.as_ref())?;
+                full.give_back(codes);
+            }
+            Ok(sink)
+        };
+        let thread = std::thread::Builder::new().name("texbake write".into()).spawn(write_all);
+        let thread = Some(thread.expect("the system starts a thread"));
+        Self { depth, row_codes, filling: Some(filling), thread }
+    }
+
+    /// Waits for the last rows and completes the file.
+    ///
+    /// # Errors
+    /// What any row or the completion met.
+    pub fn finish(mut self) -> Result<()> {
+        self.join()?.finish()
+    }
+
+    fn join(&mut self) -> Result<Box<dyn RowSink>> {
+        self.filling = None;
+        let thread = self.thread.take().ok_or(Error::Cancelled)?;
+        thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    }
+}
+
+impl CodeSink for CodeWriter {
+    fn write(&mut self, rows: usize, fill: &mut dyn FnMut(&mut CodesMut<'_>) -> Result<()>) -> Result<()> {
+        let count = rows * self.row_codes;
+        let Some(filling) = &mut self.filling else { return Err(Error::Cancelled) };
+        let Some(buffer) = filling.take() else {
+            // The writing thread has ended early: its error is the reason.
+            return self.join().and(Err(Error::Cancelled));
+        };
+        let mut codes =
+            buffer.filter(|codes| codes.as_ref().len() == count).unwrap_or_else(|| Codes::zeroed(self.depth, count));
+        fill(&mut codes.as_mut())?;
+        filling.send(codes);
+        Ok(())
+    }
+}
