@@ -76,8 +76,9 @@ impl Baker {
     ///
     /// # Errors
     /// [`crate::Error::Device`] if there is none, or it fails its self-test; later, if it fails during a job.
-    pub fn gpu(_adapter: Option<&str>) -> Result<Self> {
-        todo!()
+    #[cfg(feature = "gpu")]
+    pub fn gpu(adapter: Option<&str>) -> Result<Self> {
+        Ok(Self { backend: Arc::new(crate::backend::gpu::Gpu::open(adapter)?), reason: "asked for".into() })
     }
 
     /// The specification: plain scalar code on one thread, to compare with.

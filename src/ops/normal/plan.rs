@@ -92,10 +92,21 @@ impl NormalPlan {
         };
         let slope = match depth.greatest_code() {
             Some(greatest) => Slope::Integer(IntegerSlope::new(-scale.x, y, scale.q, stencil, greatest)),
-            None => Slope::Float(FloatSlope::new(-scale.x, y, scale.q, stencil)),
+            None => {
+                let divisor = i64::from(scale.q) * i64::from(stencil.divisor());
+                Slope::Float(FloatSlope::new(-scale.x, y, divisor))
+            }
         };
         let NormalOptions { edges, format, precision, .. } = *options;
         Ok(Self { size, depth, stencil, edges, slope, format, precision, scale })
+    }
+
+    /// The slope constants in floats, whatever the heights are: what `fast` computes with.
+    pub fn float_slope(&self) -> FloatSlope {
+        match self.slope {
+            Slope::Float(slope) => slope,
+            Slope::Integer(IntegerSlope { px, py, z }) => FloatSlope::new(px, py, z),
+        }
     }
 
     /// Codes of one row.
@@ -115,11 +126,12 @@ impl IntegerSlope {
 }
 
 impl FloatSlope {
-    fn new(x: i32, y: i32, q: u32, stencil: Stencil) -> Self {
-        let per_sum = |part: i32| {
-            let exact_enough = f64::from(part) / (f64::from(q) * f64::from(stencil.divisor()));
-            exact_enough as f32 * (2f32.powi(6) * 2f32.powi(-64))
-        };
+    /// The slopes are x / divisor and y / divisor times the stencil sums; each quotient is rounded to f32 once.
+    ///
+    /// Both parts are below 2^53, so the f64 quotient is correctly rounded, and a second rounding to 24 bits of a
+    /// quotient of parts below 2^24 and 2^29 cannot differ from one.
+    fn new(x: i32, y: i32, divisor: i64) -> Self {
+        let per_sum = |part: i32| (f64::from(part) / divisor as f64) as f32 * (2f32.powi(6) * 2f32.powi(-64));
         Self { kx: per_sum(x), ky: per_sum(y) }
     }
 }

@@ -1,0 +1,148 @@
+// IEEE binary32 in integers: round to nearest even, subnormals kept. Numbers are bit patterns.
+//
+// WGSL's own + - * / sqrt may round otherwise, flush subnormals or be fused (DESIGN 3.2). No operand and no result is
+// an infinity or NaN here. A native estimate is corrected in integers wherever one is used.
+// CPU twin: Rust's f32.
+
+const SIGN: u32 = 0x80000000u;
+const HIDDEN: u32 = 0x800000u;  // the leading bit of a normal significand
+
+fn exponent_of(a: u32) -> i32 {
+    return max(i32((a >> 23u) & 0xffu), 1);
+}
+
+fn significand_of(a: u32) -> u32 {
+    let normal = (a & 0x7f800000u) != 0u;
+    return (a & 0x7fffffu) | select(0u, HIDDEN, normal);
+}
+
+// a >> n whose lowest bit also says whether a one was shifted out.
+fn shifted_sticky(a: u32, n: i32) -> u32 {
+    if (n > 31) {
+        return u32(a != 0u);
+    }
+    return (a >> u32(n)) | u32((a & ((1u << u32(n)) - 1u)) != 0u);
+}
+
+// The float nearest to m 2^(exponent - 153), m above zero and below 2^31: three bits more than a significand has.
+fn rounded(sign: u32, exponent: i32, m: u32) -> u32 {
+    var e = exponent;
+    var n = m;
+    let left = i32(countLeadingZeros(n)) - 5;
+    if (left > 0) {
+        let room = clamp(left, 0, max(e - 1, 0));
+        n <<= u32(room);
+        e -= room;
+    } else {
+        n = shifted_sticky(n, -left);
+        e -= left;
+    }
+    if (e < 1) {
+        n = shifted_sticky(n, 1 - e);
+        e = 1;
+    }
+    let odd = (n >> 3u) & 1u;
+    let up = u32((n & 7u) + odd > 4u);
+    // The hidden bit counts the exponent up; a subnormal has none, and a carry out of the significand is right as well.
+    return sign | ((u32(e - 1) << 23u) + (n >> 3u) + up);
+}
+
+fn add(a: u32, b: u32) -> u32 {
+    let swap = (a & ~SIGN) < (b & ~SIGN);
+    let x = select(a, b, swap);
+    let y = select(b, a, swap);
+    let exponent = exponent_of(x);
+    let mx = significand_of(x) << 3u;
+    let my = shifted_sticky(significand_of(y) << 3u, exponent - exponent_of(y));
+    let subtract = ((x ^ y) & SIGN) != 0u;
+    let m = select(mx + my, mx - my, subtract);
+    if (m == 0u) {
+        return select(x & SIGN, 0u, subtract);
+    }
+    return rounded(x & SIGN, exponent, m);
+}
+
+fn sub(a: u32, b: u32) -> u32 {
+    return add(a, b ^ SIGN);
+}
+
+fn mul(a: u32, b: u32) -> u32 {
+    let sign = (a ^ b) & SIGN;
+    var ma = significand_of(a);
+    var mb = significand_of(b);
+    if (ma == 0u || mb == 0u) {
+        return sign;
+    }
+    let la = countLeadingZeros(ma) - 8u;
+    let lb = countLeadingZeros(mb) - 8u;
+    ma <<= la;
+    mb <<= lb;
+    // 46 or 47 bits after the leading one, of which 26 or 27 are kept and the others only noticed.
+    let p = product(ma, mb);
+    let kept = (p.y << 12u) | (p.x >> 20u);
+    let m = kept | u32((p.x & 0xfffffu) != 0u);
+    return rounded(sign, exponent_of(a) + exponent_of(b) - i32(la + lb) - 127, m);
+}
+
+// The square root of a normal number above zero.
+fn square_root(a: u32) -> u32 {
+    // a = m 2^(2k), 2^24 <= m < 2^26.
+    let e = exponent_of(a) - 151;
+    let odd = e & 1;
+    let m = significand_of(a) << u32(1 + odd);
+    let k = (e - odd) >> 1u;
+    // root = floor(sqrt(m 2^24)), 25 bits. The native estimate is off by a few of them, so the rest of 50 bits fits 32.
+    var root = u32(sqrt(f32(m)) * 4096.0);
+    var rest = i32((m << 24u) - root * root);
+    root = u32(i32(root) + i32(floor(f32(rest) / f32(2u * root))));
+    rest = i32((m << 24u) - root * root);
+    if (rest < 0) {
+        root -= 1u;
+        rest += i32(2u * root + 1u);
+    }
+    if (rest > i32(2u * root)) {
+        rest -= i32(2u * root + 1u);
+        root += 1u;
+    }
+    return rounded(0u, k + 139, (root << 2u) | u32(rest != 0));
+}
+
+// 1 / a for a normal number a above zero whose inverse is normal.
+fn inverse(a: u32) -> u32 {
+    let m = significand_of(a);
+    // quotient = floor(2^48 / m), at most 2^25. The native estimate is off by a few, so the rest of 48 bits fits 32.
+    var quotient = u32(281474976710656.0 / f32(m));
+    var rest = i32(0u - quotient * m);
+    quotient = u32(i32(quotient) + i32(floor(f32(rest) / f32(m))));
+    rest = i32(0u - quotient * m);
+    if (rest < 0) {
+        quotient -= 1u;
+        rest += i32(m);
+    }
+    if (rest >= i32(m)) {
+        quotient += 1u;
+        rest -= i32(m);
+    }
+    return rounded(0u, 253 - exponent_of(a), (quotient << 2u) | u32(rest != 0));
+}
+
+// The greatest integer not above a, for |a| < 2^24.
+fn floor_to_int(a: u32) -> i32 {
+    let m = significand_of(a);
+    let fraction_bits = u32(min(150 - exponent_of(a), 31));
+    let whole = i32(m >> fraction_bits);
+    let cut = i32((m & ((1u << fraction_bits) - 1u)) != 0u);
+    return select(whole, -whole - cut, (a & SIGN) != 0u);
+}
+
+// The bits of the binary16 nearest to a, ties to even, |a| <= 1.
+fn half_bits(a: u32) -> u32 {
+    let sign = (a >> 16u) & 0x8000u;
+    let e = exponent_of(a) - 112;  // exponent of a half
+    // Ten bits of the 23 are kept; below the least normal half, fewer.
+    let drop = 13 + max(1 - e, 0);
+    let sticky = shifted_sticky(significand_of(a), drop - 2);
+    let kept = sticky >> 2u;
+    let up = u32((sticky & 3u) + (kept & 1u) > 2u);
+    return sign | ((u32(max(e, 1) - 1) << 10u) + kept + up);
+}

@@ -1,0 +1,86 @@
+//! The adapters of this machine, and which of them a user means.
+
+use crate::error::{Error, Result};
+use wgpu::{Adapter, AdapterInfo, Backends, DeviceType, Instance, InstanceDescriptor};
+
+/// All adapters that can run compute kernels, the best first: discrete, integrated, virtual, then software ones.
+pub(super) fn all() -> Vec<Adapter> {
+    let instance = Instance::new(InstanceDescriptor {
+        backends: Backends::PRIMARY | Backends::GL,
+        ..InstanceDescriptor::new_without_display_handle()
+    });
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(Backends::all()));
+    adapters
+        .retain(|adapter| adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS));
+    adapters.sort_by_key(|adapter| preference(&adapter.get_info()));
+    adapters
+}
+
+/// The first adapter that a selector means: a part of its description, after `api:` if it names one.
+///
+/// # Errors
+/// [`Error::Device`] names the adapters that there are.
+pub(super) fn select(selector: Option<&str>) -> Result<Adapter> {
+    let adapters = all();
+    let names: Vec<String> = adapters.iter().map(|adapter| describe(&adapter.get_info())).collect();
+    let matches = |adapter: &Adapter| selector.is_none_or(|selector| is_meant(&adapter.get_info(), selector));
+    let asked_for = selector.map_or("gpu".into(), |selector| format!("adapter {selector:?}"));
+    adapters.into_iter().find(matches).ok_or_else(|| match names.len() {
+        0 => Error::device(asked_for, "this machine has no adapter that runs compute kernels; use --backend cpu"),
+        _ => Error::device(asked_for, format_args!("there is none; there are: {}", names.join("; "))),
+    })
+}
+
+/// Whether an adapter is a real GPU and not software that imitates one.
+pub(super) fn is_real(info: &AdapterInfo) -> bool {
+    matches!(info.device_type, DeviceType::DiscreteGpu | DeviceType::IntegratedGpu | DeviceType::VirtualGpu)
+}
+
+/// `vulkan:llvmpipe (LLVM 15.0.6, 256 bits)`.
+pub(super) fn describe(info: &AdapterInfo) -> String {
+    format!("{}:{}", api(info), info.name)
+}
+
+/// The API as a user names it.
+pub(super) fn api(info: &AdapterInfo) -> &'static str {
+    match info.backend {
+        wgpu::Backend::Vulkan => "vulkan",
+        wgpu::Backend::Metal => "metal",
+        wgpu::Backend::Dx12 => "dx12",
+        wgpu::Backend::Gl => "gl",
+        wgpu::Backend::BrowserWebGpu => "webgpu",
+        wgpu::Backend::Noop => "noop",
+    }
+}
+
+/// What kind of device an adapter is, in words.
+pub(super) fn kind(info: &AdapterInfo) -> &'static str {
+    match info.device_type {
+        DeviceType::DiscreteGpu => "discrete gpu",
+        DeviceType::IntegratedGpu => "integrated gpu",
+        DeviceType::VirtualGpu => "virtual gpu",
+        DeviceType::Cpu => "software",
+        DeviceType::Other => "unknown",
+    }
+}
+
+fn is_meant(info: &AdapterInfo, selector: &str) -> bool {
+    let selector = selector.to_lowercase();
+    let (wanted_api, name) = match selector.split_once(':') {
+        Some((wanted, name)) if ["vulkan", "metal", "dx12", "gl"].contains(&wanted) => (Some(wanted), name),
+        _ => (None, selector.as_str()),
+    };
+    let description = format!("{} {} {}", info.name, info.driver, info.driver_info).to_lowercase();
+    wanted_api.is_none_or(|wanted| wanted == api(info)) && description.contains(name)
+}
+
+fn preference(info: &AdapterInfo) -> (u8, u8) {
+    let kind = match info.device_type {
+        DeviceType::DiscreteGpu => 0,
+        DeviceType::IntegratedGpu => 1,
+        DeviceType::VirtualGpu => 2,
+        DeviceType::Other => 3,
+        DeviceType::Cpu => 4,
+    };
+    (kind, u8::from(info.backend == wgpu::Backend::Gl))
+}

@@ -1,0 +1,184 @@
+//! An open device: its compiled kernels, its buffers, and what went wrong on it.
+
+use super::adapters::describe;
+use super::kernel::KernelSource;
+use super::normal::NormalKernel;
+use super::transfer::Slot;
+use crate::error::{Error, Result};
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use wgpu::{
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, ComputePipeline,
+    ComputePipelineDescriptor, DeviceDescriptor, PipelineCompilationOptions, PipelineLayoutDescriptor, ShaderModule,
+    ShaderModuleDescriptor, ShaderSource,
+};
+
+/// A device that bakes.
+pub(crate) struct Device {
+    pub name: String,
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+    layout: BindGroupLayout,
+    modules: Mutex<HashMap<KernelSource, ShaderModule>>,
+    pipelines: Mutex<HashMap<NormalKernel, ComputePipeline>>,
+    idle: Mutex<Vec<Slot>>,
+    /// The first thing that went wrong since it was last asked for.
+    trouble: Arc<Mutex<Option<String>>>,
+}
+
+impl Device {
+    /// Opens an adapter.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if the driver refuses.
+    pub fn open(adapter: &wgpu::Adapter) -> Result<Self> {
+        let name = describe(&adapter.get_info());
+        // What every WebGPU device has, and the buffer sizes of this one.
+        let own = adapter.limits();
+        let limits = wgpu::Limits {
+            max_buffer_size: own.max_buffer_size,
+            max_storage_buffer_binding_size: own.max_storage_buffer_binding_size,
+            ..wgpu::Limits::downlevel_defaults().using_resolution(own)
+        };
+        let descriptor = DeviceDescriptor { label: Some("texbake"), required_limits: limits, ..Default::default() };
+        let opened = pollster::block_on(adapter.request_device(&descriptor));
+        let (device, queue) = opened.map_err(|error| Error::device(&name, error))?;
+        let this = Self::new(name, device, queue);
+        this.report_trouble();
+        Ok(this)
+    }
+
+    /// Wraps a device that somebody else opened; its error handlers stay theirs.
+    pub fn new(name: String, device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let layout = bind_group_layout(&device);
+        Self {
+            name,
+            device,
+            queue,
+            layout,
+            modules: Mutex::default(),
+            pipelines: Mutex::default(),
+            idle: Mutex::default(),
+            trouble: Arc::default(),
+        }
+    }
+
+    /// Without handlers, wgpu panics on errors that nobody asks for and keeps silent about a lost device.
+    fn report_trouble(&self) {
+        let first = |trouble: &Arc<Mutex<Option<String>>>, text: String| {
+            lock(trouble).get_or_insert(text);
+        };
+        let trouble = self.trouble.clone();
+        self.device.on_uncaptured_error(Arc::new(move |error| first(&trouble, error.to_string())));
+        let trouble = self.trouble.clone();
+        self.device.set_device_lost_callback(move |reason, message| {
+            if reason != wgpu::DeviceLostReason::Destroyed || !message.is_empty() {
+                first(&trouble, format!("the device was lost: {message}"));
+            }
+        });
+    }
+
+    /// Fails if anything went wrong since the last call.
+    pub fn check(&self) -> Result<()> {
+        match lock(&self.trouble).take() {
+            None => Ok(()),
+            Some(trouble) => Err(self.error(trouble)),
+        }
+    }
+
+    /// An error on this device.
+    pub fn error(&self, reason: impl ToString) -> Error {
+        Error::device(&self.name, reason)
+    }
+
+    /// The compiled kernel; compiled once per device and choice of constants.
+    pub fn pipeline(&self, kernel: &NormalKernel) -> ComputePipeline {
+        lock(&self.pipelines).entry(kernel.clone()).or_insert_with(|| self.compile(kernel)).clone()
+    }
+
+    fn compile(&self, kernel: &NormalKernel) -> ComputePipeline {
+        let source = kernel.source;
+        let module = lock(&self.modules)
+            .entry(source)
+            .or_insert_with(|| {
+                let text = ShaderSource::Wgsl(source.text().into());
+                self.device.create_shader_module(ShaderModuleDescriptor { label: Some(source.name), source: text })
+            })
+            .clone();
+        let layout = self.device.create_pipeline_layout(&PipelineLayoutDescriptor {
+            label: Some(source.name),
+            bind_group_layouts: &[Some(&self.layout)],
+            ..Default::default()
+        });
+        self.device.create_compute_pipeline(&ComputePipelineDescriptor {
+            label: Some(source.name),
+            layout: Some(&layout),
+            module: &module,
+            entry_point: Some(source.entry_point),
+            compilation_options: PipelineCompilationOptions { constants: &kernel.constants(), ..Default::default() },
+            cache: None,
+        })
+    }
+
+    /// Parameters, heights and codes, as every kernel binds them.
+    pub fn bind(
+        &self,
+        params: BindingResource<'_>,
+        heights: BindingResource<'_>,
+        codes: BindingResource<'_>,
+    ) -> BindGroup {
+        let entry = |binding, resource| BindGroupEntry { binding, resource };
+        self.device.create_bind_group(&BindGroupDescriptor {
+            label: Some("texbake"),
+            layout: &self.layout,
+            entries: &[entry(0, params), entry(1, heights), entry(2, codes)],
+        })
+    }
+
+    /// A slot of earlier bakes that holds this many bytes of heights and codes, or a new one.
+    pub fn slot(&self, heights_bytes: u64, codes_bytes: u64) -> Slot {
+        let mut idle = lock(&self.idle);
+        match idle.iter().position(|slot| slot.holds(heights_bytes, codes_bytes)) {
+            Some(index) => idle.swap_remove(index),
+            None => {
+                // A slot that is too small would never be used again by a set of equal maps.
+                idle.pop();
+                drop(idle);
+                Slot::new(self, heights_bytes, codes_bytes)
+            }
+        }
+    }
+
+    /// Keeps a slot for the next bake.
+    pub fn keep(&self, slot: Slot) {
+        lock(&self.idle).push(slot);
+    }
+
+    /// The most bytes that one binding may have.
+    pub fn greatest_binding(&self) -> usize {
+        let limits = self.device.limits();
+        limits.max_buffer_size.min(limits.max_storage_buffer_binding_size).min(i32::MAX as u64) as usize
+    }
+}
+
+fn bind_group_layout(device: &wgpu::Device) -> BindGroupLayout {
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        count: None,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("texbake"),
+        entries: &[
+            entry(0, wgpu::BufferBindingType::Uniform),
+            entry(1, wgpu::BufferBindingType::Storage { read_only: true }),
+            entry(2, wgpu::BufferBindingType::Storage { read_only: false }),
+        ],
+    })
+}
+
+/// Locks; a thread that panicked while it held the lock left a cache entry out at worst.
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

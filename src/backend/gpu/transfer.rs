@@ -1,0 +1,230 @@
+//! Bands up, codes down: a ring of slots keeps the next band uploading while one computes and one reads back.
+
+use super::device::Device;
+use super::normal::{self, NormalKernel, Params, TEXELS_PER_INVOCATION, WORKGROUP, heights_row_bytes};
+use crate::error::Result;
+use crate::map::CodesMut;
+use crate::ops::normal::NormalPlan;
+use crate::stream::{Band, CodeSink, HeightBand, HeightBands};
+use std::collections::VecDeque;
+use std::num::NonZero;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Duration;
+use wgpu::{Buffer, BufferDescriptor, BufferUsages, CommandEncoderDescriptor, ComputePipeline, MapMode, PollType};
+
+/// Bands in flight.
+const RING: usize = 3;
+
+/// A device that has not answered for this long will not: drivers reset after two seconds.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The buffers of one band in flight.
+pub(crate) struct Slot {
+    params: Buffer,
+    upload: Buffer,
+    heights: Buffer,
+    codes: Buffer,
+    download: Buffer,
+}
+
+impl Slot {
+    pub(super) fn new(device: &Device, heights_bytes: u64, codes_bytes: u64) -> Self {
+        let buffer = |label, size, usage, mapped_at_creation| {
+            device.device.create_buffer(&BufferDescriptor { label: Some(label), size, usage, mapped_at_creation })
+        };
+        let params_bytes = size_of::<Params>() as u64;
+        Self {
+            params: buffer("params", params_bytes, BufferUsages::UNIFORM | BufferUsages::COPY_DST, false),
+            upload: buffer("upload", heights_bytes, BufferUsages::MAP_WRITE | BufferUsages::COPY_SRC, true),
+            heights: buffer("heights", heights_bytes, BufferUsages::STORAGE | BufferUsages::COPY_DST, false),
+            codes: buffer("codes", codes_bytes, BufferUsages::STORAGE | BufferUsages::COPY_SRC, false),
+            download: buffer("download", codes_bytes, BufferUsages::MAP_READ | BufferUsages::COPY_DST, false),
+        }
+    }
+
+    pub(super) fn holds(&self, heights_bytes: u64, codes_bytes: u64) -> bool {
+        self.heights.size() >= heights_bytes && self.codes.size() >= codes_bytes
+    }
+}
+
+/// A band whose codes are not back yet.
+struct InFlight {
+    slot: Slot,
+    rows: usize,
+    nonce: u32,
+    submission: wgpu::SubmissionIndex,
+    mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
+}
+
+/// One bake on a device.
+pub(super) struct Transfer<'a> {
+    device: &'a Device,
+    plan: &'a NormalPlan,
+    kernel: NormalKernel,
+    pipeline: ComputePipeline,
+    flying: VecDeque<InFlight>,
+}
+
+impl<'a> Transfer<'a> {
+    pub fn new(device: &'a Device, plan: &'a NormalPlan) -> Self {
+        let kernel = NormalKernel::new(plan, plan.format.channels.count(), true);
+        let pipeline = device.pipeline(&kernel);
+        Self { device, plan, kernel, pipeline, flying: VecDeque::new() }
+    }
+
+    /// Bakes all bands.
+    pub fn run(mut self, bands: &mut dyn HeightBands, sink: &mut dyn CodeSink) -> Result<()> {
+        while let Some(band) = bands.next()? {
+            if self.flying.len() == RING {
+                self.land(sink)?;
+            }
+            let flight = self.launch(&band)?;
+            self.flying.push_back(flight);
+        }
+        while !self.flying.is_empty() {
+            self.land(sink)?;
+        }
+        self.device.check()
+    }
+
+    /// Sends a band to the device.
+    fn launch(&self, band: &HeightBand<'_>) -> Result<InFlight> {
+        let Self { device, plan, .. } = self;
+        let (width, rows) = (plan.size.width(), band.rows());
+        let row_bytes = heights_row_bytes(width, plan.depth);
+        let codes_row_bytes = self.kernel.codes_row_bytes(width);
+        let heights_bytes = (row_bytes * (rows + 2)) as u64;
+        let codes_bytes = (codes_row_bytes * rows) as u64;
+        let marks_bytes = 4 * rows as u64;
+        let slot = device.slot(heights_bytes, codes_bytes + marks_bytes);
+
+        let words = |bytes: usize| (bytes / 4) as u32;
+        let params = Params {
+            rows: rows as u32,
+            above: 0,
+            body: words(row_bytes),
+            below: words(row_bytes * (rows + 1)),
+            row_words: words(row_bytes),
+            codes: 0,
+            codes_row_words: words(codes_row_bytes),
+            marks: words(codes_row_bytes * rows),
+            nonce: fresh_nonce(),
+            ..normal::params(plan)
+        };
+        write_rows(&slot.upload, band, row_bytes).map_err(|reason| device.error(reason))?;
+        device.queue.write_buffer(&slot.params, 0, bytemuck::bytes_of(&params));
+
+        let mut encoder = device.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("normal") });
+        encoder.copy_buffer_to_buffer(&slot.upload, 0, &slot.heights, 0, heights_bytes);
+        let bindings = device.bind(
+            slot.params.as_entire_binding(),
+            slot.heights.as_entire_binding(),
+            slot.codes.as_entire_binding(),
+        );
+        dispatch(&mut encoder, &self.pipeline, &bindings, width, rows);
+        encoder.copy_buffer_to_buffer(&slot.codes, 0, &slot.download, 0, codes_bytes + marks_bytes);
+        let submission = device.queue.submit([encoder.finish()]);
+
+        // The download was last read with another nonce in its marks, or is new and zero: stale codes cannot pass.
+        let (report, mapped) = channel();
+        let also = report.clone();
+        slot.upload.map_async(MapMode::Write, .., move |result| drop(report.send(result)));
+        slot.download.map_async(MapMode::Read, .., move |result| drop(also.send(result)));
+        Ok(InFlight { slot, rows, nonce: params.nonce, submission, mapped })
+    }
+
+    /// Waits for the oldest band and hands its codes on.
+    fn land(&mut self, sink: &mut dyn CodeSink) -> Result<()> {
+        let Some(InFlight { slot, rows, nonce, submission, mapped }) = self.flying.pop_front() else { return Ok(()) };
+        let device = self.device;
+        let wait = PollType::Wait { submission_index: Some(submission), timeout: Some(PATIENCE) };
+        let polled = device.device.poll(wait);
+        device.check()?;
+        polled.map_err(|error| device.error(error))?;
+        for _ in 0..2 {
+            let result = mapped.recv_timeout(PATIENCE).map_err(|_| device.error("it did not answer"))?;
+            result.map_err(|error| device.check().err().unwrap_or_else(|| device.error(error)))?;
+        }
+        device.check()?;
+
+        let codes_row_bytes = self.kernel.codes_row_bytes(self.plan.size.width());
+        let view = slot.download.get_mapped_range(..).map_err(|error| device.error(error))?;
+        let (codes, marks) = view.split_at(codes_row_bytes * rows);
+        for (row, mark) in marks.chunks_exact(4).take(rows).enumerate() {
+            if mark != nonce.wrapping_add(row as u32).to_ne_bytes() {
+                return Err(device.error(format_args!("row {row} of a band came back without having been computed")));
+            }
+        }
+        sink.write(rows, &mut |target| {
+            read_rows(codes, codes_row_bytes, rows, target);
+            Ok(())
+        })?;
+        drop(view);
+        slot.download.unmap();
+        device.keep(slot);
+        Ok(())
+    }
+}
+
+/// Runs a kernel over `rows` rows of `width` texels.
+pub(super) fn dispatch(
+    encoder: &mut wgpu::CommandEncoder,
+    pipeline: &ComputePipeline,
+    bindings: &wgpu::BindGroup,
+    width: usize,
+    rows: usize,
+) {
+    let mut pass = encoder.begin_compute_pass(&Default::default());
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, bindings, &[]);
+    pass.dispatch_workgroups(width.div_ceil(TEXELS_PER_INVOCATION * WORKGROUP) as u32, rows as u32, 1);
+}
+
+/// A number that no earlier dispatch of this process marked its rows with, nor a row count away from it.
+fn fresh_nonce() -> u32 {
+    // A counter, not an option: it only has to differ from the last ones. Odd, so never a cleared word.
+    static NEXT: AtomicU32 = AtomicU32::new(0x7e5b_a4e1);
+    NEXT.fetch_add(0x9e37_79b2, Ordering::Relaxed)
+}
+
+/// Writes the rows of a band with its halo, each padded to `row_bytes`, and unmaps the buffer.
+fn write_rows(upload: &Buffer, band: &HeightBand<'_>, row_bytes: usize) -> Result<(), wgpu::MapRangeError> {
+    fn write<T: bytemuck::Pod>(
+        upload: &Buffer,
+        band: &Band<'_, T>,
+        row_bytes: usize,
+    ) -> Result<(), wgpu::MapRangeError> {
+        let rows = band.rows() as isize;
+        let mut view = upload.get_mapped_range_mut(..)?;
+        let padding = vec![0; row_bytes - size_of_val(band.above)];
+        for (slot, row) in (-1..=rows).enumerate() {
+            let bytes: &[u8] = bytemuck::cast_slice(band.row(row));
+            let start = slot * row_bytes;
+            view.slice(start..start + bytes.len()).copy_from_slice(bytes);
+            view.slice(start + bytes.len()..start + row_bytes).copy_from_slice(&padding);
+        }
+        drop(view);
+        upload.unmap();
+        Ok(())
+    }
+    match band {
+        HeightBand::U8(band) => write(upload, band, row_bytes),
+        HeightBand::U16(band) => write(upload, band, row_bytes),
+        HeightBand::F32(band) => write(upload, band, row_bytes),
+    }
+}
+
+/// Copies rows of codes without their padding.
+fn read_rows(codes: &[u8], row_bytes: usize, rows: usize, target: &mut CodesMut<'_>) {
+    let target = target.bytes_mut();
+    let unpadded = target.len() / rows;
+    for (from, to) in codes.chunks_exact(row_bytes).zip(target.chunks_exact_mut(unpadded)) {
+        to.copy_from_slice(&from[..unpadded]);
+    }
+}
+
+/// The length of a binding that is not empty.
+pub(super) fn binding_size(bytes: u64) -> Option<NonZero<u64>> {
+    NonZero::new(bytes)
+}
