@@ -27,9 +27,9 @@ fn main() {
         }
     }
     let reference = Baker::reference();
-    for name in ["vulkan:llvmpipe", "gl:llvmpipe", "vulkan:swiftshader"] {
+    for name in std::env::args().skip(2).collect::<Vec<_>>() {
         let t = Instant::now();
-        let gpu = match Baker::gpu(Some(name)) {
+        let gpu = match Baker::gpu(Some(&name)) {
             Ok(g) => g,
             Err(e) => {
                 println!("{name}: {e}");

@@ -1,38 +1,50 @@
 // Float heights in IEEE binary32, in the order of src/ops/normal/reference.rs.
+//
+// Numbers are bit patterns for soft_float.wgsl. What repeats is a loop, so that drivers compile each step once.
 
-const SMALLEST_SLOPE: u32 = 0x13000000u;  // 2^-89: slopes below 2^-25, over 2^64, count as zero
-const STEEP: u32 = 0x3d800000u;           // 2^-4: slopes from 2^60 on, over 2^64
-const OVER_64: u32 = 0x3c800000u;         // 2^-6
-
+const ONE: u32 = 0x3f800000u;
+const SMALLEST_HEIGHT: u32 = 0x12800000u;     // 2^-90: heights below count as zero
+const SMALLEST_SLOPE: u32 = 0x13000000u;      // 2^-89: slopes below 2^-25, over 2^64, count as zero
+const STEEP: u32 = 0x3d800000u;               // 2^-4: slopes from 2^60 on, over 2^64
+const SMALLEST_COMPONENT: u32 = 0x0d800000u;  // 2^-100: components below count as zero
 
 fn normal_codes(north: vec3<u32>, middle: vec3<u32>, south: vec3<u32>) -> vec3<u32> {
-    let nw = mul(north.x, OVER_64);
-    let n = mul(north.y, OVER_64);
-    let ne = mul(north.z, OVER_64);
-    let w = mul(middle.x, OVER_64);
-    let e = mul(middle.z, OVER_64);
-    let sw = mul(south.x, OVER_64);
-    let s = mul(south.y, OVER_64);
-    let se = mul(south.z, OVER_64);
-    let gx = weighted(add(sub(ne, nw), sub(se, sw)), sub(e, w));
-    let gy = weighted(add(sub(sw, nw), sub(se, ne)), sub(s, n));
-    let slope_x = snapped(mul(gx, params.kx));
-    let slope_y = snapped(mul(gy, params.ky));
-    let steep = max(slope_x & ~SIGN, slope_y & ~SIGN) >= STEEP;
-    let unit = select(0x5f800000u, 0x30800000u, steep);  // 2^64, 2^-30
-    let z = select(0x3f800000u, 0x10800000u, steep);     // 1, 2^-94
-    let x = mul(slope_x, unit);
-    let y = mul(slope_y, unit);
-    let scale = inverse(square_root(add(add(mul(x, x), mul(y, y)), mul(z, z))));
-    return vec3(float_code(mul(x, scale)), float_code(mul(y, scale)), float_code(mul(z, scale)));
+    let n = vec3(over_64(north.x), over_64(north.y), over_64(north.z));
+    let m = vec3(over_64(middle.x), 0u, over_64(middle.z));
+    let s = vec3(over_64(south.x), over_64(south.y), over_64(south.z));
+    var slope: vec2<u32>;
+    for (var axis = 0u; axis < 2u; axis++) {
+        let down = axis == 1u;
+        let outer = add(
+            sub(select(n.z, s.x, down), n.x),
+            sub(s.z, select(s.x, n.z, down)),
+        );
+        let centre = sub(select(m.z, s.y, down), select(m.x, n.y, down));
+        let sum = add(mul(bits_of(f32(params.outer)), outer), mul(bits_of(f32(params.centre)), centre));
+        slope[axis] = zero_below(SMALLEST_SLOPE, mul(sum, select(params.kx, params.ky, down)));
+    }
+    let steep = max(slope.x & ~SIGN, slope.y & ~SIGN) >= STEEP;
+    let unit = select(64, -30, steep);
+    var normal = vec3(scaled(slope.x, unit), scaled(slope.y, unit), select(ONE, 0x10800000u, steep));  // z: 1 or 2^-94
+    var square = 0u;
+    for (var axis = 0u; axis < 3u; axis++) {
+        square = add(square, mul(normal[axis], normal[axis]));
+    }
+    let scale = inverse(square_root(square));
+    var codes: vec3<u32>;
+    for (var axis = 0u; axis < 3u; axis++) {
+        codes[axis] = float_code(zero_below(SMALLEST_COMPONENT, mul(normal[axis], scale)));
+    }
+    return codes;
 }
 
-fn weighted(outer: u32, centre: u32) -> u32 {
-    return add(mul(bits_of(f32(params.outer)), outer), mul(bits_of(f32(params.centre)), centre));
+fn over_64(height: u32) -> u32 {
+    return scaled(zero_below(SMALLEST_HEIGHT, height), -6);
 }
 
-fn snapped(slope: u32) -> u32 {
-    return select(slope, 0u, (slope & ~SIGN) < SMALLEST_SLOPE);
+// a, or zero if its magnitude is below `least`.
+fn zero_below(least: u32, a: u32) -> u32 {
+    return select(a, 0u, (a & ~SIGN) < least);
 }
 
 // The code of a component: itself, its half, or rounded half up to an integer.
@@ -43,7 +55,9 @@ fn float_code(component: u32) -> u32 {
     if (CODE_IS_FLOAT) {
         return half_bits(component);
     }
-    return stored_code(floor_to_int(add(mul(component, bits_of(f32(params.code_m) * 0.5)), bits_of((f32(params.code_c) + 1.0) * 0.5))));
+    let factor = bits_of(f32(params.code_m) * 0.5);
+    let centre = bits_of((f32(params.code_c) + 1.0) * 0.5);
+    return stored_code(floor_to_int(add(mul(component, factor), centre)));
 }
 
 // The bits of a small integer or half of one: native arithmetic is exact on those.

@@ -1,65 +1,55 @@
-// IEEE binary32 in integers: round to nearest even, subnormals kept. Numbers are bit patterns.
+// IEEE binary32 in integers: round to nearest even. Numbers are bit patterns.
 //
 // WGSL's own + - * / sqrt may round otherwise, flush subnormals or be fused (DESIGN 3.2). No operand and no result is
-// an infinity or NaN here. A native estimate is corrected in integers wherever one is used.
+// an infinity or NaN, and a result below 2^-126 becomes zero: a kernel is written so that neither can be told from
+// the whole of IEEE. Where a native estimate is used, integers correct it.
 // CPU twin: Rust's f32.
 
 const SIGN: u32 = 0x80000000u;
-const HIDDEN: u32 = 0x800000u;  // the leading bit of a normal significand
 
 fn exponent_of(a: u32) -> i32 {
-    return max(i32((a >> 23u) & 0xffu), 1);
+    return i32((a >> 23u) & 0xffu);
 }
 
+// 24 bits with the leading one; of zero, zero.
 fn significand_of(a: u32) -> u32 {
-    let normal = (a & 0x7f800000u) != 0u;
-    return (a & 0x7fffffu) | select(0u, HIDDEN, normal);
+    return select((a & 0x7fffffu) | 0x800000u, 0u, (a & ~SIGN) == 0u);
+}
+
+// a 2^n for a result that is zero or normal.
+fn scaled(a: u32, n: i32) -> u32 {
+    return select(a + (u32(n) << 23u), a, (a & ~SIGN) == 0u);
 }
 
 // a >> n whose lowest bit also says whether a one was shifted out.
 fn shifted_sticky(a: u32, n: i32) -> u32 {
-    if (n > 31) {
-        return u32(a != 0u);
-    }
-    return (a >> u32(n)) | u32((a & ((1u << u32(n)) - 1u)) != 0u);
+    let bits = u32(min(n, 31));
+    return (a >> bits) | u32((a & ((1u << bits) - 1u)) != 0u);
 }
 
-// The float nearest to m 2^(exponent - 153), m above zero and below 2^31: three bits more than a significand has.
+// The float nearest to m 2^(exponent - 153), 0 < m < 2^28: a significand and three bits more.
 fn rounded(sign: u32, exponent: i32, m: u32) -> u32 {
-    var e = exponent;
-    var n = m;
-    let left = i32(countLeadingZeros(n)) - 5;
-    if (left > 0) {
-        let room = clamp(left, 0, max(e - 1, 0));
-        n <<= u32(room);
-        e -= room;
-    } else {
-        n = shifted_sticky(n, -left);
-        e -= left;
-    }
-    if (e < 1) {
-        n = shifted_sticky(n, 1 - e);
-        e = 1;
-    }
-    let odd = (n >> 3u) & 1u;
-    let up = u32((n & 7u) + odd > 4u);
-    // The hidden bit counts the exponent up; a subnormal has none, and a carry out of the significand is right as well.
-    return sign | ((u32(e - 1) << 23u) + (n >> 3u) + up);
+    let left = i32(countLeadingZeros(m)) - 5;
+    let n = select(m << u32(max(left, 0)), (m >> 1u) | (m & 1u), left < 0);
+    let e = exponent - left;
+    let up = u32((n & 7u) + ((n >> 3u) & 1u) > 4u);
+    // The leading one counts the exponent up, and so does a carry out of the significand.
+    let magnitude = (u32(e - 1) << 23u) + (n >> 3u) + up;
+    return sign | select(magnitude, 0u, e < 1);
 }
 
 fn add(a: u32, b: u32) -> u32 {
     let swap = (a & ~SIGN) < (b & ~SIGN);
     let x = select(a, b, swap);
     let y = select(b, a, swap);
-    let exponent = exponent_of(x);
-    let mx = significand_of(x) << 3u;
-    let my = shifted_sticky(significand_of(y) << 3u, exponent - exponent_of(y));
     let subtract = ((x ^ y) & SIGN) != 0u;
+    let mx = significand_of(x) << 3u;
+    let my = shifted_sticky(significand_of(y) << 3u, exponent_of(x) - exponent_of(y));
     let m = select(mx + my, mx - my, subtract);
     if (m == 0u) {
         return select(x & SIGN, 0u, subtract);
     }
-    return rounded(x & SIGN, exponent, m);
+    return rounded(x & SIGN, exponent_of(x), m);
 }
 
 fn sub(a: u32, b: u32) -> u32 {
@@ -68,20 +58,13 @@ fn sub(a: u32, b: u32) -> u32 {
 
 fn mul(a: u32, b: u32) -> u32 {
     let sign = (a ^ b) & SIGN;
-    var ma = significand_of(a);
-    var mb = significand_of(b);
-    if (ma == 0u || mb == 0u) {
+    // 47 or 48 bits, of which 27 or 28 are kept and the others only noticed.
+    let p = product(significand_of(a), significand_of(b));
+    let m = (p.y << 12u) | (p.x >> 20u) | u32((p.x & 0xfffffu) != 0u);
+    if (m == 0u) {
         return sign;
     }
-    let la = countLeadingZeros(ma) - 8u;
-    let lb = countLeadingZeros(mb) - 8u;
-    ma <<= la;
-    mb <<= lb;
-    // 46 or 47 bits after the leading one, of which 26 or 27 are kept and the others only noticed.
-    let p = product(ma, mb);
-    let kept = (p.y << 12u) | (p.x >> 20u);
-    let m = kept | u32((p.x & 0xfffffu) != 0u);
-    return rounded(sign, exponent_of(a) + exponent_of(b) - i32(la + lb) - 127, m);
+    return rounded(sign, exponent_of(a) + exponent_of(b) - 127, m);
 }
 
 // The square root of a normal number above zero.

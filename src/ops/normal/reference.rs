@@ -41,9 +41,18 @@ fn integer_sums<T: Copy + Into<i32>>(plan: &NormalPlan, band: &Band<'_, T>, x: u
 /// Gx / 64, Gy / 64 of floats.
 fn float_sums(plan: &NormalPlan, band: &Band<'_, f32>, x: usize, row: usize) -> [f32; 2] {
     let [centre, outer] = [plan.stencil.centre as f32, plan.stencil.outer as f32];
-    let [[nw, n, ne], [w, _, e], [sw, s, se]] =
-        band.neighbours(plan.edges.x, x, row).map(|row| row.map(|height| height * 2f32.powi(-6)));
+    let [[nw, n, ne], [w, _, e], [sw, s, se]] = band.neighbours(plan.edges.x, x, row).map(|row| row.map(over_64));
     [outer * ((ne - nw) + (se - sw)) + centre * (e - w), outer * ((sw - nw) + (se - ne)) + centre * (s - n)]
+}
+
+/// A height over 64; below 2^-90 it counts as zero, so that no difference that matters is subnormal.
+pub(crate) fn over_64(height: f32) -> f32 {
+    zero_below(2f32.powi(-90), height) * 2f32.powi(-6)
+}
+
+/// `value`, or zero if its magnitude is below `least`.
+fn zero_below(least: f32, value: f32) -> f32 {
+    if value.abs() < least { 0.0 } else { value }
 }
 
 impl IntegerSlope {
@@ -59,14 +68,14 @@ impl FloatSlope {
     /// The unit normal, in f32, in this order of operations.
     pub(crate) fn normal(&self, [gx, gy]: [f32; 2]) -> [f32; 3] {
         // Slopes over 2^64. Below 2^-25 they count as zero, so that a flat map is flat on every device.
-        let snapped = |slope: f32| if slope.abs() < 2f32.powi(-25 - 64) { 0.0 } else { slope };
-        let [x, y] = [snapped(gx * self.kx), snapped(gy * self.ky)];
+        let [x, y] = [gx * self.kx, gy * self.ky].map(|slope| zero_below(2f32.powi(-25 - 64), slope));
         // From 2^60 on, squares would overflow: then all three components are smaller by 2^94.
         let steep = x.abs().max(y.abs()) >= 2f32.powi(60 - 64);
         let (unit, z) = if steep { (2f32.powi(-30), 2f32.powi(-94)) } else { (2f32.powi(64), 1.0) };
         let [x, y] = [x * unit, y * unit];
         let inverse = 1.0 / ((x * x + y * y) + z * z).sqrt();
-        [x * inverse, y * inverse, z * inverse]
+        // Beside a slope of 2^60 and more, a component may be too small for a normal float.
+        [x, y, z].map(|component| zero_below(2f32.powi(-100), component * inverse))
     }
 }
 
