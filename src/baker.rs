@@ -2,18 +2,30 @@
 
 use crate::backend::Backend;
 use crate::backend::cpu::Reference;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::exact::AxisScale;
 use crate::map::{CodesMut, Edge, HeightDepth, HeightMap, NormalMap, Size};
 use crate::ops::normal::{NormalOptions, NormalPlan};
-use crate::stream::{
-    BandReader, CodeSink, CodeWriter, HeightBands, MapBands, MapSink, Monitor, RowSink, RowSource, read_map,
-};
+use crate::stream::{BandReader, CodeSink, CodeWriter, MapBands, MapSink, Monitor, RowSink, RowSource, read_map};
 use std::sync::Arc;
 
 /// Bakes maps on one backend.
+///
+/// ```
+/// use texbake::{Baker, CodesRef, Grid, HeightMap, NormalOptions, Scale};
+///
+/// let ramp = HeightMap::from(Grid::from_fn(4, 1, |x, _| 51 * x as u8)?);
+/// let options = NormalOptions { scale: Scale::texels(5), ..Default::default() };
+/// let map = Baker::cpu().normal(&ramp, &options)?;
+/// // Inside the ramp the slope is 1: the normal is (-1, 0, 1) / sqrt(2).
+/// let CodesRef::U8(codes) = map.codes() else { unreachable!() };
+/// assert_eq!(codes[3..6], [37, 128, 218]);
+/// # Ok::<(), texbake::Error>(())
+/// ```
 pub struct Baker {
     backend: Arc<dyn Backend>,
+    /// Takes over when the backend's device fails; without it, the failure is the result.
+    fallback: Option<Arc<dyn Backend>>,
     reason: String,
 }
 
@@ -32,30 +44,6 @@ pub struct Ran {
     pub scale: AxisScale,
 }
 
-/// A device that could run bakes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Device {
-    /// Name of the adapter, or `cpu`.
-    pub name: String,
-    /// `vulkan`, `gl`, `metal`, `dx12` or `cpu`.
-    pub api: String,
-    /// `discrete gpu`, `integrated gpu`, `virtual gpu`, `software` or `cpu`.
-    pub kind: String,
-    /// The driver and its version.
-    pub driver: String,
-    /// Whether the known-answer test passed; the reason if not.
-    pub self_test: std::result::Result<(), String>,
-    /// Whether `auto` picks this device.
-    pub picked: bool,
-    /// Why, or why not.
-    pub reason: String,
-}
-
-/// Everything that could run bakes on this machine, in the order in which `auto` would choose.
-pub fn devices() -> Vec<Device> {
-    todo!()
-}
-
 /// Maps up to this many bytes are held in memory if they wrap from bottom to top; larger ones are read twice.
 const HELD_BYTES: usize = 64 << 20;
 
@@ -63,12 +51,22 @@ impl Baker {
     /// A real GPU if there is one that passes its self-test, else the CPU. When a GPU fails during a job, the job
     /// runs again on the CPU.
     pub fn auto() -> Self {
-        Self::cpu()
+        #[cfg(feature = "gpu")]
+        let reason = match crate::backend::gpu::Gpu::open_real() {
+            Ok(gpu) => {
+                let reason = "the first real GPU that passes its self-test".into();
+                return Self { backend: Arc::new(gpu), fallback: Some(Self::cpu().backend), reason };
+            }
+            Err(reason) => reason,
+        };
+        #[cfg(not(feature = "gpu"))]
+        let reason = "this build has no gpu feature".into();
+        Self { reason, ..Self::cpu() }
     }
 
     /// All cores, vectorised.
     pub fn cpu() -> Self {
-        Self { backend: Arc::new(Reference), reason: "asked for".into() }
+        Self::only(Reference)
     }
 
     /// One GPU and nothing else: the adapter whose description contains `adapter`, or the best one.
@@ -76,14 +74,20 @@ impl Baker {
     ///
     /// # Errors
     /// [`crate::Error::Device`] if there is none, or it fails its self-test; later, if it fails during a job.
-    #[cfg(feature = "gpu")]
     pub fn gpu(adapter: Option<&str>) -> Result<Self> {
-        Ok(Self { backend: Arc::new(crate::backend::gpu::Gpu::open(adapter)?), reason: "asked for".into() })
+        #[cfg(feature = "gpu")]
+        return Ok(Self::only(crate::backend::gpu::Gpu::open(adapter)?));
+        #[cfg(not(feature = "gpu"))]
+        Err(Error::device(adapter.unwrap_or("gpu"), "this build has no gpu feature; use --backend cpu"))
     }
 
     /// The specification: plain scalar code on one thread, to compare with.
     pub fn reference() -> Self {
-        Self { backend: Arc::new(Reference), reason: "asked for".into() }
+        Self::only(Reference)
+    }
+
+    fn only(backend: impl Backend + 'static) -> Self {
+        Self { backend: Arc::new(backend), fallback: None, reason: "asked for".into() }
     }
 
     /// What runs: the backend and its device.
@@ -99,13 +103,37 @@ impl Baker {
     /// Bakes a height map into a normal map.
     ///
     /// # Errors
-    /// [`crate::Error::Parameter`] if an option is out of range.
+    /// [`crate::Error::Parameter`] if an option is out of range; [`crate::Error::Device`] if a GPU without a
+    /// fallback fails.
     pub fn normal(&self, heights: &HeightMap, options: &NormalOptions) -> Result<NormalMap> {
         let plan = NormalPlan::new(options, heights.size(), heights.depth())?;
         let mut map = NormalMap::zeroed(plan.size, plan.format);
-        let mut bands = MapBands::new(heights, plan.edges.y, self.backend.band_rows(&plan));
-        self.backend.normal(&plan, &mut bands, &mut MapSink::new(map.codes_mut(), plan.row_codes()))?;
+        self.normal_of_plan(heights, &plan, map.codes_mut())?;
         Ok(map)
+    }
+
+    /// Bakes a height map into the caller's memory: codes texel by texel, in rows from the top.
+    ///
+    /// # Errors
+    /// As [`Baker::normal`], and [`crate::Error::Parameter`] if `codes` is not of the format's depth and the map's
+    /// size.
+    pub fn normal_into(&self, heights: &HeightMap, options: &NormalOptions, codes: CodesMut<'_>) -> Result<()> {
+        let plan = NormalPlan::new(options, heights.size(), heights.depth())?;
+        let wanted = plan.row_codes() * plan.size.height();
+        if codes.depth() != plan.format.depth || codes.len() != wanted {
+            let given = format!("{} codes of {} bits", codes.len(), codes.depth());
+            return Err(Error::parameter("codes", given, format!("{wanted} codes of {} bits", plan.format.depth)));
+        }
+        self.normal_of_plan(heights, &plan, codes)
+    }
+
+    fn normal_of_plan(&self, heights: &HeightMap, plan: &NormalPlan, mut codes: CodesMut<'_>) -> Result<()> {
+        let all = 0..codes.len();
+        self.run(|backend| {
+            let mut bands = MapBands::new(heights, plan.edges.y, backend.map_band_rows(plan));
+            backend.normal(plan, &mut bands, &mut MapSink::new(codes.slice(all.clone()), plan.row_codes()))
+        })?;
+        Ok(())
     }
 
     /// Bakes rows from `open` into rows for `create` while they are read and written.
@@ -121,21 +149,43 @@ impl Baker {
         options: &NormalOptions,
         monitor: &Monitor,
     ) -> Result<Ran> {
-        let mut source = open()?;
-        let plan = NormalPlan::new(options, source.size(), source.depth())?;
-        let writer = CodeWriter::new(create(plan.size)?, plan.format.depth, plan.row_codes());
-        let mut sink = Monitored { sink: writer, width: plan.size.width(), monitor };
-        let band_rows = self.backend.band_rows(&plan);
-        let wraps = plan.edges.y == Edge::Wrap;
-        if wraps && plan.size.texels() * plan.depth.bytes() <= HELD_BYTES {
-            let map = read_map(source.as_mut())?;
-            self.backend.normal(&plan, &mut MapBands::new(&map, plan.edges.y, band_rows), &mut sink)?;
-        } else {
-            self.backend.normal(&plan, &mut BandReader::new(source, plan.edges.y, band_rows), &mut sink)?;
-        }
-        sink.sink.finish()?;
-        Ok(Ran { backend: self.name(), fallback: None, size: plan.size, depth: plan.depth, scale: plan.scale })
+        let ((backend, plan), fallback) = self.run(|backend| {
+            let source = open()?;
+            let plan = NormalPlan::new(options, source.size(), source.depth())?;
+            let writer = CodeWriter::new(create(plan.size)?, plan.format.depth, plan.row_codes());
+            let mut sink = Monitored { sink: writer, width: plan.size.width(), monitor };
+            stream(backend, &plan, source, &mut sink)?;
+            sink.sink.finish()?;
+            Ok((backend.name(), plan))
+        })?;
+        Ok(Ran { backend, fallback, size: plan.size, depth: plan.depth, scale: plan.scale })
     }
+
+    /// Runs a job, and runs it again on the fallback if the backend's device fails; then it says why.
+    fn run<T>(&self, mut job: impl FnMut(&dyn Backend) -> Result<T>) -> Result<(T, Option<String>)> {
+        match (job(self.backend.as_ref()), &self.fallback) {
+            (Err(Error::Device { adapter, reason }), Some(fallback)) => {
+                Ok((job(fallback.as_ref())?, Some(format!("{adapter}: {reason}"))))
+            }
+            (result, _) => Ok((result?, None)),
+        }
+    }
+}
+
+/// Sends the rows of a source through a backend into a sink.
+fn stream(
+    backend: &dyn Backend,
+    plan: &NormalPlan,
+    mut source: Box<dyn RowSource>,
+    sink: &mut dyn CodeSink,
+) -> Result<()> {
+    let band_rows = backend.band_rows(plan);
+    let wraps = plan.edges.y == Edge::Wrap;
+    if wraps && plan.size.texels() * plan.depth.bytes() <= HELD_BYTES {
+        let map = read_map(source.as_mut())?;
+        return backend.normal(plan, &mut MapBands::new(&map, plan.edges.y, band_rows), sink);
+    }
+    backend.normal(plan, &mut BandReader::new(source, plan.edges.y, band_rows), sink)
 }
 
 /// Counts what passes to a sink.
@@ -150,5 +200,65 @@ impl CodeSink for Monitored<'_> {
         self.monitor.check()?;
         self.sink.write(rows, fill)?;
         self.monitor.add((rows * self.width) as u64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::Grid;
+    use crate::stream::HeightBands;
+
+    /// A device that fails after it has written a wrong row.
+    struct Failing;
+
+    impl Backend for Failing {
+        fn name(&self) -> String {
+            "failing".into()
+        }
+
+        fn band_rows(&self, _: &NormalPlan) -> usize {
+            1
+        }
+
+        fn normal(&self, _: &NormalPlan, bands: &mut dyn HeightBands, sink: &mut dyn CodeSink) -> Result<()> {
+            bands.next()?;
+            sink.write(1, &mut |codes| {
+                codes.bytes_mut().fill(77);
+                Ok(())
+            })?;
+            Err(Error::device("failing", "out of memory"))
+        }
+    }
+
+    fn pyramid() -> HeightMap {
+        Grid::from_fn(9, 7, |x, y| (x.min(8 - x) * y.min(6 - y) * 20) as u8).unwrap().into()
+    }
+
+    #[test]
+    fn a_failed_device_leaves_the_job_to_the_fallback() {
+        let baker = Baker { fallback: Some(Arc::new(Reference)), ..Baker::only(Failing) };
+        let options = NormalOptions::default();
+        assert_eq!(
+            baker.normal(&pyramid(), &options).unwrap(),
+            Baker::reference().normal(&pyramid(), &options).unwrap()
+        );
+        let ((), why) = baker
+            .run(|backend| if backend.name() == "failing" { Err(Error::device("a", "b")) } else { Ok(()) })
+            .unwrap();
+        assert_eq!(why.as_deref(), Some("a: b"));
+    }
+
+    #[test]
+    fn without_a_fallback_the_failure_is_the_result() {
+        let error = Baker::only(Failing).normal(&pyramid(), &NormalOptions::default()).unwrap_err();
+        assert_eq!(error.to_string(), "failing: out of memory");
+    }
+
+    #[test]
+    fn the_callers_memory_must_fit() {
+        let mut codes = vec![0; 9 * 7 * 3 - 1];
+        let error = Baker::reference().normal_into(&pyramid(), &NormalOptions::default(), CodesMut::U8(&mut codes));
+        assert_eq!(error.unwrap_err().to_string(), "codes is 188 codes of 8 bits: it must be 189 codes of 8 bits");
     }
 }

@@ -2,6 +2,7 @@
 
 mod backend;
 mod baker;
+mod devices;
 mod error;
 mod exact;
 pub mod io;
@@ -9,7 +10,8 @@ mod map;
 mod ops;
 pub mod stream;
 
-pub use baker::{Baker, Device, Ran, devices};
+pub use baker::{Baker, Ran};
+pub use devices::{Device, devices};
 pub use error::{Error, Result};
 pub use exact::{AxisScale, Rational, Scale};
 pub use map::{

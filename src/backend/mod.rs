@@ -13,8 +13,13 @@ pub(crate) trait Backend: Send + Sync {
     /// What runs, for reports: `cpu, 2 threads, avx512`.
     fn name(&self) -> String;
 
-    /// Rows of a band that suit this backend.
+    /// Rows of a band that suit this backend when rows are read and written meanwhile.
     fn band_rows(&self, plan: &NormalPlan) -> usize;
+
+    /// Rows of a band that suit this backend when the map lies in memory.
+    fn map_band_rows(&self, plan: &NormalPlan) -> usize {
+        self.band_rows(plan)
+    }
 
     /// Bakes all bands of a height map into the rows of a normal map.
     ///

@@ -98,6 +98,16 @@ impl<'a> CodesRef<'a> {
 }
 
 impl CodesMut<'_> {
+    /// How a code is stored.
+    pub fn depth(&self) -> Depth {
+        match self {
+            Self::U8(_) => Depth::Bits8,
+            Self::U16(_) => Depth::Bits16,
+            Self::F16(_) => Depth::Float16,
+            Self::F32(_) => Depth::Float32,
+        }
+    }
+
     /// Number of codes.
     #[allow(clippy::len_without_is_empty, reason = "a map is never empty")]
     pub fn len(&self) -> usize {

@@ -5,11 +5,18 @@ use wgpu::{Adapter, AdapterInfo, Backends, DeviceType, Instance, InstanceDescrip
 
 /// All adapters that can run compute kernels, the best first: discrete, integrated, virtual, then software ones.
 pub(super) fn all() -> Vec<Adapter> {
-    let instance = Instance::new(InstanceDescriptor {
-        backends: Backends::PRIMARY | Backends::GL,
-        ..InstanceDescriptor::new_without_display_handle()
-    });
-    let mut adapters = pollster::block_on(instance.enumerate_adapters(Backends::all()));
+    of(Backends::PRIMARY | Backends::GL)
+}
+
+/// The adapters that `auto` considers. OpenGL is left to those who name it: its drivers print to the console when they
+/// are only asked what there is, and a GPU that has nothing newer is rarely faster than the CPU.
+pub(super) fn primary() -> Vec<Adapter> {
+    of(Backends::PRIMARY)
+}
+
+fn of(backends: Backends) -> Vec<Adapter> {
+    let descriptor = InstanceDescriptor { backends, ..InstanceDescriptor::new_without_display_handle() };
+    let mut adapters = pollster::block_on(Instance::new(descriptor).enumerate_adapters(backends));
     adapters
         .retain(|adapter| adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS));
     adapters.sort_by_key(|adapter| preference(&adapter.get_info()));

@@ -7,7 +7,6 @@ use crate::map::CodesMut;
 use crate::ops::normal::NormalPlan;
 use crate::stream::{Band, CodeSink, HeightBand, HeightBands};
 use std::collections::VecDeque;
-use std::num::NonZero;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
@@ -222,9 +221,4 @@ fn read_rows(codes: &[u8], row_bytes: usize, rows: usize, target: &mut CodesMut<
     for (from, to) in codes.chunks_exact(row_bytes).zip(target.chunks_exact_mut(unpadded)) {
         to.copy_from_slice(&from[..unpadded]);
     }
-}
-
-/// The length of a binding that is not empty.
-pub(super) fn binding_size(bytes: u64) -> Option<NonZero<u64>> {
-    NonZero::new(bytes)
 }
