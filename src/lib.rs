@@ -18,4 +18,11 @@ pub use map::{
     Channels, Codes, CodesMut, CodesRef, Convention, Depth, Edge, Edges, Encoding, Grid, HeightDepth, HeightMap,
     Heights, HeightsMut, NormalFormat, NormalMap, Size,
 };
+#[cfg(feature = "gpu")]
+pub mod gpu {
+    //! Bakes on a wgpu device of the caller's.
+
+    pub use crate::backend::gpu::{Codes, Heights, Hosted, NormalBake};
+    pub use wgpu;
+}
 pub use ops::normal::{Filter, NormalOptions, Precision};

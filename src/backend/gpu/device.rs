@@ -135,6 +135,13 @@ impl Device {
         })
     }
 
+    /// A new uniform buffer with these bytes.
+    pub fn uniform(&self, bytes: &[u8]) -> wgpu::Buffer {
+        use wgpu::util::{BufferInitDescriptor, DeviceExt};
+        let usage = wgpu::BufferUsages::UNIFORM;
+        self.device.create_buffer_init(&BufferInitDescriptor { label: Some("params"), contents: bytes, usage })
+    }
+
     /// A slot of earlier bakes that holds this many bytes of heights and codes, or a new one.
     pub fn slot(&self, heights_bytes: u64, codes_bytes: u64) -> Slot {
         let mut idle = lock(&self.idle);

@@ -2,6 +2,7 @@
 
 mod adapters;
 mod device;
+mod hosted;
 mod kernel;
 mod normal;
 mod self_test;
@@ -12,6 +13,7 @@ use crate::error::Result;
 use crate::ops::normal::NormalPlan;
 use crate::stream::{CodeSink, HeightBands};
 use device::Device;
+pub use hosted::{Codes, Heights, Hosted, NormalBake};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use transfer::Transfer;
 

@@ -1,0 +1,330 @@
+//! Bakes inside somebody else's program: its device, its buffers and textures, its command encoder.
+
+use super::device::Device;
+use super::normal::{self, NormalKernel, Params, heights_row_bytes};
+use super::transfer::dispatch;
+use super::{GREATEST_DISPATCH, Gpu, adapters, self_test};
+use crate::error::{Error, Result};
+use crate::map::{Channels, Depth, Encoding, HeightDepth, NormalFormat, Size};
+use crate::ops::normal::{NormalOptions, NormalPlan};
+use wgpu::{
+    Buffer, BufferDescriptor, BufferUsages, CommandEncoder, ErrorFilter, Extent3d, TexelCopyBufferInfo,
+    TexelCopyBufferLayout, Texture, TextureFormat, TextureUsages,
+};
+
+/// texbake on a wgpu device that the caller owns.
+///
+/// Nothing is read back and nothing is submitted after [`Hosted::new`]: a bake is recorded into the caller's encoder.
+///
+/// ```no_run
+/// use texbake::gpu::{Codes, Heights, Hosted, wgpu};
+/// use texbake::{HeightDepth, NormalOptions, Scale, Size};
+///
+/// # fn frame(device: &wgpu::Device, queue: &wgpu::Queue, height: &wgpu::Texture, normal: &wgpu::Texture)
+/// # -> texbake::Result<()> {
+/// let texbake = Hosted::new(device, queue)?;
+/// let options = NormalOptions { scale: Scale::texels(24), ..Default::default() };
+/// let bake = texbake.normal(Size::new(1024, 1024)?, HeightDepth::U16, &options)?;
+///
+/// let mut encoder = device.create_command_encoder(&Default::default());
+/// bake.encode(&mut encoder, Heights::Texture(height), Codes::Texture(normal))?;
+/// queue.submit([encoder.finish()]);
+/// # Ok(())
+/// # }
+/// ```
+pub struct Hosted {
+    gpu: Gpu,
+}
+
+/// Where the heights of a hosted bake lie.
+#[derive(Debug, Clone, Copy)]
+pub enum Heights<'a> {
+    /// A buffer with usage `STORAGE`: rows of [`NormalBake::heights_row_bytes`] bytes from its beginning on.
+    Buffer(&'a Buffer),
+    /// A texture with usage `COPY_SRC` of the bake's size: `R8Unorm` or `R8Uint`, `R16Unorm` or `R16Uint`, `R32Float`.
+    Texture(&'a Texture),
+}
+
+/// Where the codes of a hosted bake go.
+#[derive(Debug, Clone, Copy)]
+pub enum Codes<'a> {
+    /// A buffer with usage `STORAGE`: rows of [`NormalBake::codes_row_bytes`] bytes from its beginning on.
+    Buffer(&'a Buffer),
+    /// A texture with usage `COPY_DST` of the bake's size, whose format stores the codes as they are: two channels
+    /// for xy, four for xyz (the fourth becomes 1), unorm, uint, snorm, sint or float of the codes' depth, never sRGB.
+    Texture(&'a Texture),
+}
+
+/// A bake on a hosted device, ready to be recorded any number of times.
+pub struct NormalBake<'a> {
+    device: &'a Device,
+    plan: NormalPlan,
+}
+
+/// Rows of a texture copy begin at multiples of this.
+const COPY_ROW_BYTES: usize = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize;
+
+impl Hosted {
+    /// Takes a device and its queue and runs the self-test on them.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if the device computes other bytes than the CPU, or cannot run the kernels.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self> {
+        let name = adapters::describe(&device.adapter_info());
+        let gpu = Gpu { device: Device::new(name, device.clone(), queue.clone()) };
+        guarded(&gpu.device, || self_test::run(&gpu))?;
+        Ok(Self { gpu })
+    }
+
+    /// Resolves the options for maps of one size and depth, and compiles the kernels.
+    ///
+    /// Heights in a buffer or texture are not checked: the codes around a float height that is NaN or infinite mean
+    /// nothing.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if an option is out of range; [`Error::Device`] if the device has no room for such a map
+    /// in one binding.
+    pub fn normal(&self, size: Size, depth: HeightDepth, options: &NormalOptions) -> Result<NormalBake<'_>> {
+        let device = &self.gpu.device;
+        let bake = NormalBake { device, plan: NormalPlan::new(options, size, depth)? };
+        let rows =
+            [bake.heights_row_bytes(), bake.codes_row_bytes()].map(|bytes| bytes.next_multiple_of(COPY_ROW_BYTES));
+        let greatest = device.greatest_binding();
+        if rows.iter().any(|bytes| bytes.saturating_mul(size.height()) > greatest) {
+            let reason =
+                format!("a map of {size} texels exceeds its bindings of {greatest} bytes; request higher limits");
+            return Err(device.error(reason));
+        }
+        let channels = bake.plan.format.channels.count();
+        guarded(device, || {
+            for codes_per_texel in [channels, texture_channels(bake.plan.format)] {
+                device.pipeline(&NormalKernel::new(&bake.plan, codes_per_texel, false));
+            }
+            Ok(())
+        })?;
+        Ok(bake)
+    }
+}
+
+impl NormalBake<'_> {
+    /// Bytes from one row of heights to the next in a buffer: four texels make whole words.
+    pub fn heights_row_bytes(&self) -> usize {
+        heights_row_bytes(self.plan.size.width(), self.plan.depth)
+    }
+
+    /// Bytes from one row of codes to the next in a buffer: four texels make whole words.
+    pub fn codes_row_bytes(&self) -> usize {
+        self.kernel(self.plan.format.channels.count()).codes_row_bytes(self.plan.size.width())
+    }
+
+    /// Records the bake. The map is complete when the encoder's commands have run.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if a buffer is too small, or a texture has another size or a format that does not hold
+    /// the heights or the codes; [`Error::Device`] if wgpu refuses a resource, for a missing usage say.
+    pub fn encode(&self, encoder: &mut CommandEncoder, heights: Heights<'_>, codes: Codes<'_>) -> Result<()> {
+        self.check(heights, codes)?;
+        guarded(self.device, || {
+            let heights = self.heights_on_device(encoder, heights);
+            match codes {
+                Codes::Buffer(buffer) => {
+                    let kernel = self.kernel(self.plan.format.channels.count());
+                    self.dispatch(encoder, &kernel, &heights, buffer, self.codes_row_bytes());
+                }
+                Codes::Texture(texture) => {
+                    let kernel = self.kernel(texture_channels(self.plan.format));
+                    let row_bytes = kernel.codes_row_bytes(self.plan.size.width()).next_multiple_of(COPY_ROW_BYTES);
+                    let buffer = self.scratch("codes", row_bytes);
+                    self.dispatch(encoder, &kernel, &heights, &buffer, row_bytes);
+                    encoder.copy_buffer_to_texture(
+                        rows_of(&buffer, row_bytes),
+                        texture.as_image_copy(),
+                        extent(self.plan.size),
+                    );
+                }
+            }
+            Ok(())
+        })
+    }
+
+    fn check(&self, heights: Heights<'_>, codes: Codes<'_>) -> Result<()> {
+        let plan = &self.plan;
+        match heights {
+            Heights::Buffer(buffer) => {
+                check_length("heights buffer", buffer, self.heights_row_bytes() * plan.size.height())?
+            }
+            Heights::Texture(texture) => {
+                check_size("heights texture", texture, plan.size)?;
+                check_format("heights texture", texture, heights_formats(plan.depth), TextureUsages::COPY_SRC)?;
+            }
+        }
+        match codes {
+            Codes::Buffer(buffer) => check_length("codes buffer", buffer, self.codes_row_bytes() * plan.size.height()),
+            Codes::Texture(texture) => {
+                check_size("codes texture", texture, plan.size)?;
+                check_format("codes texture", texture, codes_formats(plan.format), TextureUsages::COPY_DST)
+            }
+        }
+    }
+
+    fn kernel(&self, codes_per_texel: usize) -> NormalKernel {
+        NormalKernel::new(&self.plan, codes_per_texel, false)
+    }
+
+    /// The heights as rows in a buffer.
+    fn heights_on_device(&self, encoder: &mut CommandEncoder, heights: Heights<'_>) -> RowsBuffer {
+        match heights {
+            Heights::Buffer(buffer) => RowsBuffer { buffer: buffer.clone(), row_bytes: self.heights_row_bytes() },
+            Heights::Texture(texture) => {
+                let row_bytes = self.heights_row_bytes().next_multiple_of(COPY_ROW_BYTES);
+                let buffer = self.scratch("heights", row_bytes);
+                let size = extent(self.plan.size);
+                encoder.copy_texture_to_buffer(texture.as_image_copy(), rows_of(&buffer, row_bytes), size);
+                RowsBuffer { buffer, row_bytes }
+            }
+        }
+    }
+
+    /// A buffer of the bake's rows that lives as long as the recorded commands.
+    fn scratch(&self, label: &str, row_bytes: usize) -> Buffer {
+        self.device.device.create_buffer(&BufferDescriptor {
+            label: Some(label),
+            size: (row_bytes * self.plan.size.height()) as u64,
+            usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
+    }
+
+    /// Records the kernel over all rows, in as many dispatches as their number needs.
+    fn dispatch(
+        &self,
+        encoder: &mut CommandEncoder,
+        kernel: &NormalKernel,
+        heights: &RowsBuffer,
+        codes: &Buffer,
+        codes_row_bytes: usize,
+    ) {
+        let Self { device, plan } = self;
+        let (width, height) = (plan.size.width(), plan.size.height());
+        let pipeline = device.pipeline(kernel);
+        let row_words = heights.row_bytes / 4;
+        let row_at = |row: isize| (plan.edges.y.resolve(row, height) * row_words) as u32;
+        for first in (0..height).step_by(GREATEST_DISPATCH) {
+            let rows = GREATEST_DISPATCH.min(height - first);
+            let params = Params {
+                rows: rows as u32,
+                above: row_at(first as isize - 1),
+                body: row_at(first as isize),
+                below: row_at((first + rows) as isize),
+                row_words: row_words as u32,
+                codes: (first * codes_row_bytes / 4) as u32,
+                codes_row_words: (codes_row_bytes / 4) as u32,
+                ..normal::params(plan)
+            };
+            let uniform = device.uniform(bytemuck::bytes_of(&params));
+            let bindings =
+                device.bind(uniform.as_entire_binding(), heights.buffer.as_entire_binding(), codes.as_entire_binding());
+            dispatch(encoder, &pipeline, &bindings, width, rows);
+        }
+    }
+}
+
+/// Rows in a buffer.
+struct RowsBuffer {
+    buffer: Buffer,
+    row_bytes: usize,
+}
+
+/// Runs `work` and returns what the device says of it, which would else reach the caller's own error handler.
+fn guarded<T>(device: &Device, work: impl FnOnce() -> Result<T>) -> Result<T> {
+    let scopes = [ErrorFilter::Internal, ErrorFilter::OutOfMemory, ErrorFilter::Validation]
+        .map(|filter| device.device.push_error_scope(filter));
+    let result = work();
+    let mut trouble = None;
+    for scope in scopes.into_iter().rev() {
+        trouble = pollster::block_on(scope.pop()).or(trouble);
+    }
+    match trouble {
+        Some(error) => Err(device.error(error)),
+        None => result,
+    }
+}
+
+/// Channels of a texture that holds a format: there are no textures of three.
+fn texture_channels(format: NormalFormat) -> usize {
+    match format.channels {
+        Channels::Xy => 2,
+        Channels::Xyz => 4,
+    }
+}
+
+fn heights_formats(depth: HeightDepth) -> &'static [TextureFormat] {
+    match depth {
+        HeightDepth::U8 => &[TextureFormat::R8Unorm, TextureFormat::R8Uint],
+        HeightDepth::U16 => &[TextureFormat::R16Unorm, TextureFormat::R16Uint],
+        HeightDepth::F32 => &[TextureFormat::R32Float],
+    }
+}
+
+fn codes_formats(format: NormalFormat) -> &'static [TextureFormat] {
+    use TextureFormat as T;
+    match (format.channels, format.depth, format.encoding == Encoding::Snorm) {
+        (Channels::Xy, Depth::Bits8, false) => &[T::Rg8Unorm, T::Rg8Uint],
+        (Channels::Xy, Depth::Bits8, true) => &[T::Rg8Snorm, T::Rg8Sint],
+        (Channels::Xy, Depth::Bits16, false) => &[T::Rg16Unorm, T::Rg16Uint],
+        (Channels::Xy, Depth::Bits16, true) => &[T::Rg16Snorm, T::Rg16Sint],
+        (Channels::Xy, Depth::Float16, _) => &[T::Rg16Float],
+        (Channels::Xy, Depth::Float32, _) => &[T::Rg32Float],
+        (Channels::Xyz, Depth::Bits8, false) => &[T::Rgba8Unorm, T::Rgba8Uint],
+        (Channels::Xyz, Depth::Bits8, true) => &[T::Rgba8Snorm, T::Rgba8Sint],
+        (Channels::Xyz, Depth::Bits16, false) => &[T::Rgba16Unorm, T::Rgba16Uint],
+        (Channels::Xyz, Depth::Bits16, true) => &[T::Rgba16Snorm, T::Rgba16Sint],
+        (Channels::Xyz, Depth::Float16, _) => &[T::Rgba16Float],
+        (Channels::Xyz, Depth::Float32, _) => &[T::Rgba32Float],
+    }
+}
+
+fn check_length(parameter: &'static str, buffer: &Buffer, bytes: usize) -> Result<()> {
+    if buffer.size() < bytes as u64 {
+        return Err(Error::parameter(
+            parameter,
+            format_args!("{} bytes", buffer.size()),
+            format!("at least {bytes} bytes"),
+        ));
+    }
+    Ok(())
+}
+
+fn check_size(parameter: &'static str, texture: &Texture, size: Size) -> Result<()> {
+    let found = texture.size();
+    if found != extent(size) {
+        let given = format!("{} x {} x {}", found.width, found.height, found.depth_or_array_layers);
+        return Err(Error::parameter(parameter, given, format!("{size} x 1 texels")));
+    }
+    Ok(())
+}
+
+fn check_format(
+    parameter: &'static str,
+    texture: &Texture,
+    formats: &[TextureFormat],
+    usage: TextureUsages,
+) -> Result<()> {
+    if !formats.contains(&texture.format()) {
+        let range = formats.iter().map(|format| format!("{format:?}")).collect::<Vec<_>>().join(" or ");
+        return Err(Error::parameter(parameter, format_args!("{:?}", texture.format()), range));
+    }
+    if !texture.usage().contains(usage) {
+        return Err(Error::parameter(parameter, format_args!("{:?}", texture.usage()), format!("usable as {usage:?}")));
+    }
+    Ok(())
+}
+
+fn rows_of(buffer: &Buffer, row_bytes: usize) -> TexelCopyBufferInfo<'_> {
+    let layout = TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes as u32), rows_per_image: None };
+    TexelCopyBufferInfo { buffer, layout }
+}
+
+fn extent(size: Size) -> Extent3d {
+    Extent3d { width: size.width() as u32, height: size.height() as u32, depth_or_array_layers: 1 }
+}
