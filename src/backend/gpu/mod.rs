@@ -5,6 +5,8 @@ mod device;
 mod hosted;
 mod kernel;
 mod normal;
+#[cfg(test)]
+mod reflection;
 mod self_test;
 mod transfer;
 

@@ -21,11 +21,12 @@ pub(super) fn run(gpu: &Gpu) -> Result<()> {
     Ok(())
 }
 
-/// One map for each exact kernel: wide integers to codes, wide integers to floats, floats.
-fn cases() -> Result<[(HeightMap, NormalOptions); 3]> {
+/// A map for each exact way: narrow and wide integers to codes, wide integers to floats, floats.
+fn cases() -> Result<[(HeightMap, NormalOptions); 4]> {
     const WIDTH: usize = 67;
     const HEIGHT: usize = 16;
     let noise = |x: usize, y: usize| scrambled((y * WIDTH + x) as u32);
+    let bytes = Grid::from_fn(WIDTH, HEIGHT, |x, y| (noise(x, y) >> 24) as u8)?;
     let integers = Grid::from_fn(WIDTH, HEIGHT, |x, y| (noise(x, y) >> 16) as u16)?;
     let floats = Grid::from_fn(WIDTH, HEIGHT, |x, y| {
         // Every exponent and both signs, subnormals included, infinities and NaN not.
@@ -36,6 +37,7 @@ fn cases() -> Result<[(HeightMap, NormalOptions); 3]> {
     let steep = Scale::texels(crate::exact::Rational::new(16_777_213, 9_699_691)?);
     let options = |filter, format| NormalOptions { scale: steep, filter, format, ..Default::default() };
     Ok([
+        (bytes.into(), NormalOptions { scale: Scale::texels(24), ..Default::default() }),
         (integers.clone().into(), options(Filter::Scharr, format(Encoding::Unorm, Depth::Bits16))),
         (integers.into(), options(Filter::Central, format(Encoding::Float, Depth::Float32))),
         (floats.try_into()?, options(Filter::Sobel, format(Encoding::Float, Depth::Float32))),
