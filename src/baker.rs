@@ -1,8 +1,8 @@
 //! The front door: a backend, chosen once, that bakes maps.
 
 use crate::backend::Backend;
-use crate::backend::cpu::Reference;
-use crate::error::Result;
+use crate::backend::cpu::{Cpu, Reference};
+use crate::error::{Error, Result};
 use crate::exact::AxisScale;
 use crate::map::{CodesMut, Edge, HeightDepth, HeightMap, NormalMap, Size};
 use crate::ops::normal::{NormalOptions, NormalPlan};
@@ -68,7 +68,7 @@ impl Baker {
 
     /// All cores, vectorised.
     pub fn cpu() -> Self {
-        Self { backend: Arc::new(Reference), reason: "asked for".into() }
+        Self { backend: Arc::new(Cpu::new(None)), reason: "asked for".into() }
     }
 
     /// One GPU and nothing else: the adapter whose description contains `adapter`, or the best one.
@@ -100,11 +100,29 @@ impl Baker {
     /// # Errors
     /// [`crate::Error::Parameter`] if an option is out of range.
     pub fn normal(&self, heights: &HeightMap, options: &NormalOptions) -> Result<NormalMap> {
-        let plan = NormalPlan::new(options, heights.size(), heights.depth())?;
-        let mut map = NormalMap::zeroed(plan.size, plan.format);
-        let mut bands = MapBands::new(heights, plan.edges.y, self.backend.band_rows(&plan));
-        self.backend.normal(&plan, &mut bands, &mut MapSink::new(map.codes_mut(), plan.row_codes()))?;
+        options.format.check()?;
+        let mut map = NormalMap::zeroed(heights.size(), options.format);
+        self.normal_into(heights, options, map.codes_mut())?;
         Ok(map)
+    }
+
+    /// Bakes a height map into the caller's memory: texel by texel, in rows from the top, x, y, z or x, y.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] if an option is out of range, or `codes` is of another depth or length than the
+    /// normal map.
+    pub fn normal_into(&self, heights: &HeightMap, options: &NormalOptions, codes: CodesMut<'_>) -> Result<()> {
+        let plan = NormalPlan::new(options, heights.size(), heights.depth())?;
+        if codes.depth() != plan.format.depth {
+            return Err(Error::parameter("depth of the codes", codes.depth(), format!("{}", plan.format.depth)));
+        }
+        let count = plan.size.texels() * plan.format.channels.count();
+        if codes.len() != count {
+            let range = format!("{count} for a map of {} with {} channels", plan.size, plan.format.channels);
+            return Err(Error::parameter("number of codes", codes.len(), range));
+        }
+        let mut bands = MapBands::new(heights, plan.edges.y, self.backend.band_rows(&plan));
+        self.backend.normal(&plan, &mut bands, &mut MapSink::new(codes, plan.row_codes()))
     }
 
     /// Bakes rows from `open` into rows for `create` while they are read and written.
