@@ -137,7 +137,8 @@ impl Prove<f64> for ToF16 {
     #[inline(always)]
     fn code(&self, estimate: f64) -> (f16, bool) {
         let nearest = estimate as f32;
-        let [low, high] = [1.0 - f32::EPSILON, 1.0 + f32::EPSILON].map(|side| nearest_f16_of_f32(nearest * side));
+        let low = nearest_f16_of_f32(nearest * (1.0 - f32::EPSILON));
+        let high = nearest_f16_of_f32(nearest * (1.0 + f32::EPSILON));
         (low, low.to_bits() != high.to_bits())
     }
 
@@ -153,7 +154,7 @@ impl Prove<f64> for ToF32 {
     #[inline(always)]
     fn code(&self, estimate: f64) -> (f32, bool) {
         const SIDE: f64 = 8.0 * f64::EPSILON;
-        let [low, high] = [1.0 - SIDE, 1.0 + SIDE].map(|side| (estimate * side) as f32);
+        let [low, high] = [(estimate * (1.0 - SIDE)) as f32, (estimate * (1.0 + SIDE)) as f32];
         (low, low != high)
     }
 

@@ -73,7 +73,8 @@ macro_rules! estimate_in {
 
             #[inline(always)]
             fn codes(&self, sums: [i32; 2]) -> ([R::Code; 3], bool) {
-                let [x, y, z] = self.estimate.normal(sums).map(|component| self.round.code(component));
+                let [x, y, z] = self.estimate.normal(sums);
+                let [x, y, z] = [self.round.code(x), self.round.code(y), self.round.code(z)];
                 ([x.0, y.0, z.0], x.1 | y.1 | z.1)
             }
 
@@ -95,7 +96,8 @@ impl<R: Round + Sync> Rule for Written<R> {
 
     #[inline(always)]
     fn codes(&self, sums: [f32; 2]) -> ([R::Code; 3], bool) {
-        (self.slope.normal(sums).map(|component| self.round.code(component)), false)
+        let [x, y, z] = self.slope.normal(sums);
+        ([self.round.code(x), self.round.code(y), self.round.code(z)], false)
     }
 }
 
@@ -105,6 +107,7 @@ impl<R: Round + Sync> Rule for Estimated<R> {
 
     #[inline(always)]
     fn codes(&self, sums: [i32; 2]) -> ([R::Code; 3], bool) {
-        (self.estimate.normal(sums).map(|component| self.round.code(component)), false)
+        let [x, y, z] = self.estimate.normal(sums);
+        ([self.round.code(x), self.round.code(y), self.round.code(z)], false)
     }
 }

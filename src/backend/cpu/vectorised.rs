@@ -2,7 +2,7 @@
 
 /// Compiles a function for AVX-512 (as in Ice Lake or Zen 4), AVX2 and the target's baseline.
 ///
-/// What it calls must be `#[inline(always)]`, or it is compiled for the baseline alone.
+/// What it calls must be `#[inline(always)]`, or it is compiled for the baseline alone: `array::map` is not for it.
 macro_rules! vectorised {
     ($($function:tt)*) => {
         #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]

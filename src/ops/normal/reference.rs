@@ -38,16 +38,24 @@ pub(crate) fn codes_of_texel(plan: &NormalPlan, band: &HeightBand<'_>, x: usize,
 #[inline(always)]
 pub(crate) fn integer_sums<T: Copy + Into<i32>>(stencil: Stencil, around: [[T; 3]; 3]) -> [i32; 2] {
     let Stencil { centre, outer } = stencil;
-    let [[nw, n, ne], [w, _, e], [sw, s, se]] = around.map(|row| row.map(Into::into));
-    [outer * ((ne - nw) + (se - sw)) + centre * (e - w), outer * ((sw - nw) + (se - ne)) + centre * (s - n)]
+    let [[nw, n, ne], [w, _, e], [sw, s, se]] = around;
+    let rise = |from: T, to: T| to.into() - from.into();
+    [
+        outer * (rise(nw, ne) + rise(sw, se)) + centre * rise(w, e),
+        outer * (rise(nw, sw) + rise(ne, se)) + centre * rise(n, s),
+    ]
 }
 
 /// Gx / 64, Gy / 64 of floats, from the 3 x 3 heights around a texel.
 #[inline(always)]
 pub(crate) fn float_sums(stencil: Stencil, around: [[f32; 3]; 3]) -> [f32; 2] {
     let [centre, outer] = [stencil.centre as f32, stencil.outer as f32];
-    let [[nw, n, ne], [w, _, e], [sw, s, se]] = around.map(|row| row.map(|height| height * 2f32.powi(-6)));
-    [outer * ((ne - nw) + (se - sw)) + centre * (e - w), outer * ((sw - nw) + (se - ne)) + centre * (s - n)]
+    let [[nw, n, ne], [w, _, e], [sw, s, se]] = around;
+    let rise = |from: f32, to: f32| to * 2f32.powi(-6) - from * 2f32.powi(-6);
+    [
+        outer * (rise(nw, ne) + rise(sw, se)) + centre * rise(w, e),
+        outer * (rise(nw, sw) + rise(ne, se)) + centre * rise(n, s),
+    ]
 }
 
 impl IntegerSlope {
