@@ -118,7 +118,7 @@ impl Baker {
         }
         let count = plan.size.texels() * plan.format.channels.count();
         if codes.len() != count {
-            let range = format!("{count} for a map of {} with {} channels", plan.size, plan.format.channels);
+            let range = format!("{count} for a map of {} with {}", plan.size, plan.format.channels);
             return Err(Error::parameter("number of codes", codes.len(), range));
         }
         let mut bands = MapBands::new(heights, plan.edges.y, self.backend.band_rows(&plan));
@@ -167,5 +167,24 @@ impl CodeSink for Monitored<'_> {
         self.monitor.check()?;
         self.sink.write(rows, fill)?;
         self.monitor.add((rows * self.width) as u64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{Codes, Depth, Grid};
+
+    #[test]
+    fn normal_into_refuses_codes_that_do_not_fit() {
+        let map = HeightMap::from(Grid::new(2, 2, vec![0u8, 1, 2, 3]).unwrap());
+        let bake = |depth, count| {
+            let mut codes = Codes::zeroed(depth, count);
+            Baker::reference().normal_into(&map, &NormalOptions::default(), codes.as_mut()).map_err(|e| e.to_string())
+        };
+        assert_eq!(bake(Depth::Bits8, 12), Ok(()));
+        assert_eq!(bake(Depth::Bits16, 12), Err("depth of the codes is 16: it must be 8".into()));
+        let range = "number of codes is 11: it must be 12 for a map of 2 x 2 with xyz";
+        assert_eq!(bake(Depth::Bits8, 11), Err(range.into()));
     }
 }

@@ -2,6 +2,7 @@
 
 use super::rule::Rule;
 use crate::ops::normal::{Stencil, float_sums, integer_sums};
+use std::ops::Range;
 
 /// Texels of a block: its arrays stay in the first cache.
 pub(super) const BLOCK: usize = 512;
@@ -11,7 +12,7 @@ const LANES: usize = 64;
 
 /// What a height is to the sums.
 pub(super) trait Height: Copy + Send + Sync {
-    type Sum: Copy + Default;
+    type Sum: Copy + Default + PartialEq;
 
     fn sums(stencil: Stencil, around: [[Self; 3]; 3]) -> [Self::Sum; 2];
 }
@@ -21,23 +22,41 @@ pub(super) struct Block<S, C> {
     pub sums: [[S; BLOCK]; 2],
     codes: [[C; BLOCK]; 3],
     doubts: [bool; BLOCK],
+    /// The sums that were in doubt last, and their codes.
+    mended: Option<([S; 2], [C; 3])>,
 }
 
-impl<S: Copy + Default, C: Copy + Default> Block<S, C> {
+impl<S: Copy + Default + PartialEq, C: Copy + Default> Block<S, C> {
     pub fn new() -> Self {
-        Self { sums: [[S::default(); BLOCK]; 2], codes: [[C::default(); BLOCK]; 3], doubts: [false; BLOCK] }
+        Self {
+            sums: [[S::default(); BLOCK]; 2],
+            codes: [[C::default(); BLOCK]; 3],
+            doubts: [false; BLOCK],
+            mended: None,
+        }
     }
 
     /// From sums to codes, for the first `count` texels.
     pub fn round<R: Rule<Sum = S, Code = C>>(&mut self, rule: &R, count: usize) {
         estimate(rule, self, count.next_multiple_of(LANES).min(BLOCK));
-        for (group, doubts) in self.doubts[..count].chunks(LANES).enumerate() {
-            if doubts.iter().fold(false, |any, doubt| any | doubt) {
-                for at in (0..doubts.len()).filter(|at| doubts[*at]).map(|at| group * LANES + at) {
-                    let codes = rule.exact_codes(self.sums.map(|sums| sums[at]));
-                    self.codes.iter_mut().zip(codes).for_each(|(plane, code)| plane[at] = code);
-                }
+        for group in (0..count).step_by(LANES) {
+            if self.doubts[group..][..LANES].iter().fold(false, |any, doubt| any | doubt) {
+                self.mend(rule, group..(group + LANES).min(count));
             }
+        }
+    }
+
+    /// The exact codes of the texels in doubt.
+    fn mend<R: Rule<Sum = S, Code = C>>(&mut self, rule: &R, texels: Range<usize>) {
+        for at in texels.filter(|at| self.doubts[*at]) {
+            let sums = [self.sums[0][at], self.sums[1][at]];
+            // On a plane every texel may lie on the same tie.
+            let codes = match self.mended {
+                Some((mended, codes)) if mended == sums => codes,
+                _ => rule.exact_codes(sums),
+            };
+            self.mended = Some((sums, codes));
+            self.codes.iter_mut().zip(codes).for_each(|(plane, code)| plane[at] = code);
         }
     }
 
@@ -86,7 +105,7 @@ fn sums_of<T: Height>(stencil: Stencil, rows: [&[T]; 3], first: usize, sums: [&m
 
 vectorised! {
     fn estimate<R: Rule>(rule: &R, block: &mut Block<R::Sum, R::Code>, count: usize) {
-        let Block { sums: [gx, gy], codes: [x, y, z], doubts } = block;
+        let Block { sums: [gx, gy], codes: [x, y, z], doubts, .. } = block;
         for i in 0..count.min(BLOCK) {
             let (codes, doubt) = rule.codes([gx[i], gy[i]]);
             [x[i], y[i], z[i]] = codes;

@@ -5,7 +5,7 @@ use crate::ops::normal::{FloatSlope, IntegerSlope};
 
 /// From the stencil sums of a texel to its codes.
 pub(super) trait Rule: Sync {
-    type Sum: Copy + Default;
+    type Sum: Copy + Default + PartialEq;
     type Code: Copy + Default;
 
     /// The codes, and whether any of them is in doubt.

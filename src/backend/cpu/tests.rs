@@ -135,16 +135,42 @@ fn every_edge_and_filter_at_every_size() {
 #[test]
 fn ties() {
     let mut random = SplitMix(3);
-    // Steps of M or 0 on either side give slopes of 0, scale/2 and scale.
-    for top in [255, 65535] {
-        for map in maps([131, 40], |_, _| if random.next() & 1 == 0 { top } else { 0 }) {
-            for text in ["1", "2", "1/2", "3/2", "3/4", "4/3", "8/3", "24/7", "20/21", "5/12", "-3/2", "16777215"] {
+    // Levels M/15 apart: slopes of n/2, n/4 and the like on both axes for the scales below.
+    for step in [255 / 15, 65535 / 15] {
+        for map in maps([131, 40], |_, _| (random.next() % 16) as u16 * step) {
+            for text in ["15", "30", "15/2", "10", "20", "45/2", "-45", "40", "12", "30/7", "360/7", "16777215"] {
                 for format in formats() {
                     assert_same_bytes(&map, &NormalOptions { scale: scale(text), format, ..NormalOptions::default() });
                 }
             }
         }
     }
+}
+
+/// A roof of slope 3/4: every normal is (-3, 0, 4)/5, and 229.5 rounds up.
+#[test]
+fn a_plane_on_a_tie() {
+    let roof = Grid::from_fn(600, 4, |x, _| 2 * x as u16).unwrap().into();
+    let edges = Edges { x: Edge::Mirror, y: Edge::Clamp };
+    let options = NormalOptions { scale: scale("196605/8"), edges, ..NormalOptions::default() };
+    let codes = baked(&Cpu::new(None), &roof, &options, 4);
+    let CodesRef::U8(codes) = codes.as_ref() else { panic!("8 bits were asked for") };
+    for (texel, code) in codes.chunks(3).enumerate() {
+        // At the mirrored borders the slope along the rows is 0.
+        let at_border = [0, 599].contains(&(texel % 600));
+        assert_eq!(code, if at_border { [128, 128, 255] } else { [51, 128, 230] }, "texel {texel}");
+    }
+}
+
+#[test]
+fn the_comparison_sees_one_code() {
+    let map = floats([5, 3], |x, y| (x * y) as f32);
+    let options = NormalOptions::default();
+    let expected = baked(&Reference, &map, &options, 3);
+    let mut sabotaged = expected.clone();
+    sabotaged.as_mut().bytes_mut()[22] ^= 1;
+    let difference = difference(&map, &options, &sabotaged, &expected).unwrap();
+    assert!(difference.contains("code 22, column 2, row 1"), "{difference}");
 }
 
 #[test]
@@ -216,7 +242,7 @@ fn neither_threads_nor_bands_change_a_byte() {
     }
 }
 
-/// `fast` may give the neighbour of an 8-bit code near a boundary, and up to that of a 16-bit one; floats lose 4 bits.
+/// `fast` may give the neighbour of a code near a boundary, and an f32 up to 16 places away (8.5 are proved).
 #[test]
 fn fast_is_next_to_exact() {
     let mut random = SplitMix(8);
