@@ -17,7 +17,7 @@ pub(super) trait Round {
 pub(super) trait Prove<V> {
     type Code: Copy + Default;
 
-    fn code(&self, estimate: V) -> (Self::Code, bool);
+    fn code_or_doubt(&self, estimate: V) -> (Self::Code, bool);
 
     /// The code of `a / sqrt(s)`.
     fn exact(&self, a: i64, s: u128) -> Self::Code;
@@ -90,7 +90,7 @@ macro_rules! prove {
             type Code = $code;
 
             #[inline(always)]
-            fn code(&self, estimate: $float) -> ($code, bool) {
+            fn code_or_doubt(&self, estimate: $float) -> ($code, bool) {
                 const DOUBT: $float = $doubt;
                 const SIGN_DECIDES: $float = 1.0 / 131_072.0;
                 let CodeRounding { m, c, offset, .. } = self.rounding;
@@ -135,7 +135,7 @@ impl Prove<f64> for ToF16 {
 
     /// The component lies between the f32 neighbours of the estimate's nearest f32, one of which may be a tie.
     #[inline(always)]
-    fn code(&self, estimate: f64) -> (f16, bool) {
+    fn code_or_doubt(&self, estimate: f64) -> (f16, bool) {
         let nearest = estimate as f32;
         let low = nearest_f16_of_f32(nearest * (1.0 - f32::EPSILON));
         let high = nearest_f16_of_f32(nearest * (1.0 + f32::EPSILON));
@@ -152,7 +152,7 @@ impl Prove<f64> for ToF32 {
 
     /// The estimate is off by 8.5e (see `Estimate`), a side by e more; 16e lie between them.
     #[inline(always)]
-    fn code(&self, estimate: f64) -> (f32, bool) {
+    fn code_or_doubt(&self, estimate: f64) -> (f32, bool) {
         const SIDE: f64 = 8.0 * f64::EPSILON;
         let [low, high] = [(estimate * (1.0 - SIDE)) as f32, (estimate * (1.0 + SIDE)) as f32];
         (low, low != high)
@@ -160,5 +160,56 @@ impl Prove<f64> for ToF32 {
 
     fn exact(&self, a: i64, s: u128) -> f32 {
         nearest_f32(a, s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{Depth, Encoding};
+
+    fn to_integer<C>(encoding: Encoding, depth: Depth) -> ToInteger<C> {
+        ToInteger::new(NormalFormat { encoding, depth, ..NormalFormat::default() })
+    }
+
+    #[test]
+    fn integer_codes_are_in_doubt_near_their_boundaries_alone() {
+        let unorm = to_integer::<u8>(Encoding::Unorm, Depth::Bits8);
+        for (v, code) in [(1.0, 255), (-1.0, 0), (0.0, 128), (1e-9, 128), (-1e-9, 127), (0.5, 191)] {
+            assert_eq!(unorm.code_or_doubt(v), (code, false), "unorm {v}");
+        }
+        for k in [-127.0, -3.0, 1.0, 100.0] {
+            assert!(unorm.code_or_doubt(k / 127.5).1 && unorm.code_or_doubt((k + 0.00008) / 127.5).1, "unorm {k}");
+            assert!(!unorm.code_or_doubt((k + 0.001) / 127.5).1, "unorm {k}");
+        }
+        let snorm = to_integer::<u8>(Encoding::Snorm, Depth::Bits8);
+        for (v, code) in [(1.0, 127), (-1.0, 129), (0.0, 0), (-1e-9, 0), (-1.0 / 127.0, 255)] {
+            assert_eq!(snorm.code_or_doubt(v), (code, false), "snorm {v}");
+        }
+        assert!(snorm.code_or_doubt(0.5 / 127.0).1 && snorm.code_or_doubt(-0.5 / 127.0).1);
+        let words = to_integer::<u16>(Encoding::Unorm, Depth::Bits16);
+        for (v, code) in [(1.0, 65535), (-1.0, 0), (0.0, 32768), (-1e-12, 32767)] {
+            assert_eq!(words.code_or_doubt(v), (code, false), "unorm {v}");
+        }
+        assert!(words.code_or_doubt(7.0 / 32767.5).1 && words.code_or_doubt((7.0 - 4e-11) / 32767.5).1);
+        assert!(!words.code_or_doubt((7.0 + 1e-9) / 32767.5).1);
+    }
+
+    #[test]
+    fn floats_are_in_doubt_near_half_way_alone() {
+        let [ulp, f16_ulp] = [2f64.powi(-24), 2f64.powi(-11)]; // of 0.6
+        let [below, f16_below] = [10_066_329.0 * ulp, 1228.0 * f16_ulp];
+        for off in [0.0, 1e-15, -1e-15] {
+            assert!(ToF32.code_or_doubt(below + ulp / 2.0 + off).1, "{off}");
+            assert!(ToF16.code_or_doubt(f16_below + f16_ulp / 2.0 + off).1, "{off}");
+        }
+        assert_eq!(ToF32.code_or_doubt(below + ulp * 0.501), ((below + ulp) as f32, false));
+        assert_eq!(ToF32.code_or_doubt(below + ulp * 0.499), (below as f32, false));
+        assert_eq!(ToF16.code_or_doubt(f16_below + f16_ulp * 0.501), (f16::from_f64(f16_below + f16_ulp), false));
+        assert_eq!(ToF16.code_or_doubt(f16_below + f16_ulp * 0.499), (f16::from_f64(f16_below), false));
+        for exact in [0.0, 1.0] {
+            assert_eq!(ToF32.code_or_doubt(exact), (exact as f32, false));
+            assert_eq!(ToF16.code_or_doubt(exact), (f16::from_f64(exact), false));
+        }
     }
 }

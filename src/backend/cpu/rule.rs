@@ -74,7 +74,8 @@ macro_rules! estimate_in {
             #[inline(always)]
             fn codes(&self, sums: [i32; 2]) -> ([R::Code; 3], bool) {
                 let [x, y, z] = self.estimate.normal(sums);
-                let [x, y, z] = [self.round.code(x), self.round.code(y), self.round.code(z)];
+                let round = &self.round;
+                let [x, y, z] = [round.code_or_doubt(x), round.code_or_doubt(y), round.code_or_doubt(z)];
                 ([x.0, y.0, z.0], x.1 | y.1 | z.1)
             }
 
