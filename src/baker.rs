@@ -1,7 +1,7 @@
 //! The front door: a backend, chosen once, that bakes maps.
 
 use crate::backend::Backend;
-use crate::backend::cpu::Reference;
+use crate::backend::cpu::{Cpu, Reference};
 use crate::error::{Error, Result};
 use crate::exact::AxisScale;
 use crate::map::{CodesMut, Edge, HeightDepth, HeightMap, NormalMap, Size};
@@ -66,7 +66,7 @@ impl Baker {
 
     /// All cores, vectorised.
     pub fn cpu() -> Self {
-        Self::only(Reference)
+        Self::only(Cpu::new(None))
     }
 
     /// One GPU and nothing else: the adapter whose description contains `adapter`, or the best one.

@@ -98,16 +98,6 @@ impl<'a> CodesRef<'a> {
 }
 
 impl CodesMut<'_> {
-    /// How a code is stored.
-    pub fn depth(&self) -> Depth {
-        match self {
-            Self::U8(_) => Depth::Bits8,
-            Self::U16(_) => Depth::Bits16,
-            Self::F16(_) => Depth::Float16,
-            Self::F32(_) => Depth::Float32,
-        }
-    }
-
     /// Number of codes.
     #[allow(clippy::len_without_is_empty, reason = "a map is never empty")]
     pub fn len(&self) -> usize {
@@ -126,6 +116,26 @@ impl CodesMut<'_> {
             Self::U16(codes) => CodesMut::U16(&mut codes[range]),
             Self::F16(codes) => CodesMut::F16(&mut codes[range]),
             Self::F32(codes) => CodesMut::F32(&mut codes[range]),
+        }
+    }
+
+    /// The codes in pieces of `count`, to fill at the same time; the last piece may be shorter.
+    pub fn chunks(&mut self, count: usize) -> Vec<CodesMut<'_>> {
+        match self {
+            Self::U8(codes) => codes.chunks_mut(count).map(CodesMut::U8).collect(),
+            Self::U16(codes) => codes.chunks_mut(count).map(CodesMut::U16).collect(),
+            Self::F16(codes) => codes.chunks_mut(count).map(CodesMut::F16).collect(),
+            Self::F32(codes) => codes.chunks_mut(count).map(CodesMut::F32).collect(),
+        }
+    }
+
+    /// How a code is stored.
+    pub fn depth(&self) -> Depth {
+        match self {
+            Self::U8(_) => Depth::Bits8,
+            Self::U16(_) => Depth::Bits16,
+            Self::F16(_) => Depth::Float16,
+            Self::F32(_) => Depth::Float32,
         }
     }
 

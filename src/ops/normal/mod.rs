@@ -9,4 +9,4 @@ mod reference;
 
 pub use options::{Filter, NormalOptions, Precision};
 pub(crate) use plan::{FloatSlope, IntegerSlope, NormalPlan, Slope, Stencil};
-pub(crate) use reference::{codes_of_band, codes_of_texel};
+pub(crate) use reference::{codes_of_band, float_sums, integer_sums};

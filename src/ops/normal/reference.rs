@@ -2,8 +2,8 @@
 
 use super::{FloatSlope, IntegerSlope, NormalPlan, Slope, Stencil};
 use crate::exact::{CodeRounding, nearest_f16, nearest_f32};
-use crate::map::{CodesMut, Encoding, NormalFormat};
-use crate::stream::{Band, HeightBand};
+use crate::map::{CodesMut, NormalFormat};
+use crate::stream::HeightBand;
 use half::f16;
 
 /// The codes of all texels of a band.
@@ -19,45 +19,60 @@ pub(crate) fn codes_of_texel(plan: &NormalPlan, band: &HeightBand<'_>, x: usize,
     let index = row * plan.size.width() + x;
     match (band, plan.slope) {
         (HeightBand::U8(band), Slope::Integer(slope)) => {
-            store_fraction(plan.format, slope.normal(integer_sums(plan, band, x, row)), codes, index);
+            let sums = integer_sums(plan.stencil, band.neighbours(plan.edges.x, x, row));
+            store_fraction(plan.format, slope.normal(sums), codes, index);
         }
         (HeightBand::U16(band), Slope::Integer(slope)) => {
-            store_fraction(plan.format, slope.normal(integer_sums(plan, band, x, row)), codes, index);
+            let sums = integer_sums(plan.stencil, band.neighbours(plan.edges.x, x, row));
+            store_fraction(plan.format, slope.normal(sums), codes, index);
         }
         (HeightBand::F32(band), Slope::Float(slope)) => {
-            store_float(plan.format, slope.normal(float_sums(plan, band, x, row)), codes, index);
+            let sums = float_sums(plan.stencil, band.neighbours(plan.edges.x, x, row));
+            store_float(plan.format, slope.normal(sums), codes, index);
         }
         _ => unreachable!("the plan was made for heights of another depth"),
     }
 }
 
-/// Gx, Gy of integer codes.
-fn integer_sums<T: Copy + Into<i32>>(plan: &NormalPlan, band: &Band<'_, T>, x: usize, row: usize) -> [i32; 2] {
-    let Stencil { centre, outer } = plan.stencil;
-    let [[nw, n, ne], [w, _, e], [sw, s, se]] = band.neighbours(plan.edges.x, x, row).map(|row| row.map(Into::into));
-    [outer * ((ne - nw) + (se - sw)) + centre * (e - w), outer * ((sw - nw) + (se - ne)) + centre * (s - n)]
+/// Gx, Gy of integer codes, from the 3 x 3 heights around a texel.
+#[inline(always)]
+pub(crate) fn integer_sums<T: Copy + Into<i32>>(stencil: Stencil, around: [[T; 3]; 3]) -> [i32; 2] {
+    let Stencil { centre, outer } = stencil;
+    let [[nw, n, ne], [w, _, e], [sw, s, se]] = around;
+    let rise = |from: T, to: T| to.into() - from.into();
+    [
+        outer * (rise(nw, ne) + rise(sw, se)) + centre * rise(w, e),
+        outer * (rise(nw, sw) + rise(ne, se)) + centre * rise(n, s),
+    ]
 }
 
-/// Gx / 64, Gy / 64 of floats.
-fn float_sums(plan: &NormalPlan, band: &Band<'_, f32>, x: usize, row: usize) -> [f32; 2] {
-    let [centre, outer] = [plan.stencil.centre as f32, plan.stencil.outer as f32];
-    let [[nw, n, ne], [w, _, e], [sw, s, se]] = band.neighbours(plan.edges.x, x, row).map(|row| row.map(over_64));
-    [outer * ((ne - nw) + (se - sw)) + centre * (e - w), outer * ((sw - nw) + (se - ne)) + centre * (s - n)]
+/// Gx / 64, Gy / 64 of floats, from the 3 x 3 heights around a texel.
+#[inline(always)]
+pub(crate) fn float_sums(stencil: Stencil, around: [[f32; 3]; 3]) -> [f32; 2] {
+    let [centre, outer] = [stencil.centre as f32, stencil.outer as f32];
+    let [[nw, n, ne], [w, _, e], [sw, s, se]] = around;
+    let rise = |from: f32, to: f32| over_64(to) - over_64(from);
+    [
+        outer * (rise(nw, ne) + rise(sw, se)) + centre * rise(w, e),
+        outer * (rise(nw, sw) + rise(ne, se)) + centre * rise(n, s),
+    ]
 }
 
 /// A height over 64; below 2^-90 it counts as zero, so that no difference that matters is subnormal.
-pub(crate) fn over_64(height: f32) -> f32 {
+#[inline(always)]
+fn over_64(height: f32) -> f32 {
     zero_below(2f32.powi(-90), height) * 2f32.powi(-6)
 }
 
 /// `value`, or zero if its magnitude is below `least`.
+#[inline(always)]
 fn zero_below(least: f32, value: f32) -> f32 {
     if value.abs() < least { 0.0 } else { value }
 }
 
 impl IntegerSlope {
     /// X, Y, Z and S.
-    fn normal(&self, [gx, gy]: [i32; 2]) -> ([i64; 3], u128) {
+    pub(crate) fn normal(&self, [gx, gy]: [i32; 2]) -> ([i64; 3], u128) {
         let normal = [i64::from(self.px) * i64::from(gx), i64::from(self.py) * i64::from(gy), self.z];
         let square = normal.iter().map(|part| u128::from(part.unsigned_abs()).pow(2)).sum();
         (normal, square)
@@ -66,16 +81,19 @@ impl IntegerSlope {
 
 impl FloatSlope {
     /// The unit normal, in f32, in this order of operations.
+    #[inline(always)]
     pub(crate) fn normal(&self, [gx, gy]: [f32; 2]) -> [f32; 3] {
         // Slopes over 2^64. Below 2^-25 they count as zero, so that a flat map is flat on every device.
-        let [x, y] = [gx * self.kx, gy * self.ky].map(|slope| zero_below(2f32.powi(-25 - 64), slope));
+        let snapped = |slope| zero_below(2f32.powi(-25 - 64), slope);
+        let [x, y] = [snapped(gx * self.kx), snapped(gy * self.ky)];
         // From 2^60 on, squares would overflow: then all three components are smaller by 2^94.
         let steep = x.abs().max(y.abs()) >= 2f32.powi(60 - 64);
         let (unit, z) = if steep { (2f32.powi(-30), 2f32.powi(-94)) } else { (2f32.powi(64), 1.0) };
         let [x, y] = [x * unit, y * unit];
         let inverse = 1.0 / ((x * x + y * y) + z * z).sqrt();
         // Beside a slope of 2^60 and more, a component may be too small for a normal float.
-        [x, y, z].map(|component| zero_below(2f32.powi(-100), component * inverse))
+        let component = |part: f32| zero_below(2f32.powi(-100), part * inverse);
+        [component(x), component(y), component(z)]
     }
 }
 
@@ -96,12 +114,13 @@ fn store_fraction(format: NormalFormat, (normal, s): ([i64; 3], u128), codes: &m
 
 /// Stores the components of a float normal: rounded half up in f32 for integer codes, half to even for f16.
 fn store_float(format: NormalFormat, normal: [f32; 3], codes: &mut CodesMut<'_>, index: usize) {
+    let rounding = || CodeRounding::new(format.encoding, format.depth).expect("checked with the options");
     let channels = format.channels.count();
     for (channel, &component) in normal[..channels].iter().enumerate() {
         let at = index * channels + channel;
         match codes {
-            CodesMut::U8(codes) => codes[at] = code_of_float(format, component) as u8,
-            CodesMut::U16(codes) => codes[at] = code_of_float(format, component) as u16,
+            CodesMut::U8(codes) => codes[at] = code_of_float(rounding(), component) as u8,
+            CodesMut::U16(codes) => codes[at] = code_of_float(rounding(), component) as u16,
             CodesMut::F16(codes) => codes[at] = f16::from_f32(component),
             CodesMut::F32(codes) => codes[at] = component,
         }
@@ -109,9 +128,7 @@ fn store_float(format: NormalFormat, normal: [f32; 3], codes: &mut CodesMut<'_>,
 }
 
 /// floor((m v + c + 1) / 2) in f32, in this order: v (m/2) + (c + 1)/2. Each constant is exact.
-fn code_of_float(format: NormalFormat, component: f32) -> u32 {
-    debug_assert!(format.encoding != Encoding::Float);
-    let rounding = CodeRounding::new(format.encoding, format.depth).expect("checked with the options");
+fn code_of_float(rounding: CodeRounding, component: f32) -> u32 {
     let code = component * (rounding.m as f32 * 0.5) + (rounding.c as f32 + 1.0) * 0.5;
     rounding.stored(code.floor() as i32)
 }

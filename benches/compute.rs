@@ -1,0 +1,157 @@
+//! Compute alone: heights in memory to codes in memory, beside a copy that moves as many bytes.
+//!
+//! ```text
+//! cargo bench --bench compute                    # all, about three minutes, with a table at the end
+//! cargo bench --bench compute -- 4096/u16        # what has this in its name
+//! ```
+//!
+//! The output is allocated before, and the warm-up touches it. RAYON_NUM_THREADS sets the number of threads.
+
+use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
+use rayon::prelude::*;
+use std::cell::{LazyCell, RefCell};
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+use texbake::{
+    Baker, Codes, Depth, Grid, HeightDepth, HeightMap, NormalFormat, NormalOptions, Precision, Result, Scale,
+};
+
+const SIDES: [usize; 3] = [1024, 4096, 8192];
+const HEIGHTS: [HeightDepth; 3] = [HeightDepth::U8, HeightDepth::U16, HeightDepth::F32];
+const OUTPUTS: [Depth; 2] = [Depth::Bits8, Depth::Bits16];
+
+/// The scalar reference takes seconds for more.
+const REFERENCE_TEXELS: usize = 1024 * 1024;
+
+/// What is measured: a name, a baker and its precision. GPU bakers go here.
+fn bakers() -> Vec<(String, Baker, Precision)> {
+    vec![
+        ("reference".into(), Baker::reference(), Precision::Exact),
+        ("cpu exact".into(), Baker::cpu(), Precision::Exact),
+        ("cpu fast".into(), Baker::cpu(), Precision::Fast),
+    ]
+}
+
+fn main() {
+    let mut criterion = Criterion::default()
+        .sample_size(15)
+        .warm_up_time(Duration::from_millis(200))
+        .measurement_time(Duration::from_millis(1000))
+        .without_plots()
+        .configure_from_args();
+    let table = Table::default();
+    for (name, baker, _) in bakers() {
+        println!("{name}: {}", baker.name());
+    }
+    for side in SIDES {
+        for heights in HEIGHTS {
+            // Made by the first bench that runs.
+            let map = LazyCell::new(|| terrain(side, heights).expect("its size is above zero"));
+            for output in OUTPUTS {
+                bench_map(&mut criterion, &table, (side, heights), &map, output);
+            }
+        }
+    }
+    criterion.final_summary();
+    table.print();
+}
+
+/// One map to one depth, by the copy and by every baker in turn.
+fn bench_map<F: FnOnce() -> HeightMap>(
+    criterion: &mut Criterion,
+    table: &Table,
+    (side, heights): (usize, HeightDepth),
+    map: &LazyCell<HeightMap, F>,
+    output: Depth,
+) {
+    let texels = side * side;
+    let format = NormalFormat { depth: output, ..NormalFormat::default() };
+    let bytes = texels * (heights.bytes() + format.channels.count() * output.bytes());
+    let case = format!("{side}/{heights}/rgb{output}");
+    let mut group = criterion.benchmark_group(&case);
+    group.sampling_mode(SamplingMode::Flat);
+    group.throughput(Throughput::ElementsAndBytes { elements: texels as u64, bytes: bytes as u64 });
+    let mut bench = |name: &str, run: &mut dyn FnMut()| {
+        group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
+            bencher.iter_custom(|runs| {
+                let start = Instant::now();
+                (0..runs).for_each(|_| run());
+                let elapsed = start.elapsed();
+                table.add(&case, name, texels, bytes, elapsed.as_secs_f64() / runs as f64);
+                elapsed
+            });
+        });
+    };
+
+    let source = vec![1u8; bytes / 2];
+    let mut target = vec![2u8; bytes / 2];
+    bench("copy", &mut || copy(&source, black_box(&mut target)));
+
+    let mut codes = Codes::zeroed(output, texels * format.channels.count());
+    for (name, baker, precision) in bakers() {
+        if name == "reference" && texels > REFERENCE_TEXELS {
+            continue;
+        }
+        let options = NormalOptions { scale: Scale::texels(24), format, precision, ..NormalOptions::default() };
+        bench(&name, &mut || {
+            baker.normal_into(black_box(map), &options, codes.as_mut()).expect("the options are in range");
+        });
+    }
+}
+
+/// Reads and writes as many bytes as a bake, on as many threads.
+fn copy(source: &[u8], target: &mut [u8]) {
+    const PIECE: usize = 1 << 18;
+    target.par_chunks_mut(PIECE).zip(source.par_chunks(PIECE)).for_each(|(target, source)| {
+        target.copy_from_slice(source);
+    });
+}
+
+/// Hills with fine noise: slopes of all directions, few of them alike.
+fn terrain(side: usize, depth: HeightDepth) -> Result<HeightMap> {
+    let height = |x: usize, y: usize| {
+        let hills = (x as f32 * 0.013).sin() * (y as f32 * 0.017).cos();
+        let hash = (x as u32).wrapping_mul(0x9e37_79b1) ^ (y as u32).wrapping_mul(0x85eb_ca77);
+        let noise = (hash ^ (hash >> 15)).wrapping_mul(0x2c1b_3c6d) >> 16;
+        0.5 + 0.4 * hills + noise as f32 / 65536.0 * 0.05
+    };
+    Ok(match depth {
+        HeightDepth::U8 => Grid::from_fn(side, side, |x, y| (height(x, y) * 255.0) as u8)?.into(),
+        HeightDepth::U16 => Grid::from_fn(side, side, |x, y| (height(x, y) * 65535.0) as u16)?.into(),
+        HeightDepth::F32 => Grid::from_fn(side, side, height)?.try_into()?,
+    })
+}
+
+/// Seconds of every run, by case and name, in the order in which they came.
+#[derive(Default)]
+struct Table {
+    rows: RefCell<Vec<Row>>,
+}
+
+struct Row {
+    case: String,
+    name: String,
+    texels: usize,
+    bytes: usize,
+    seconds: Vec<f64>,
+}
+
+impl Table {
+    fn add(&self, case: &str, name: &str, texels: usize, bytes: usize, seconds: f64) {
+        let mut rows = self.rows.borrow_mut();
+        match rows.iter_mut().find(|row| row.case == case && row.name == name) {
+            Some(row) => row.seconds.push(seconds),
+            None => rows.push(Row { case: case.into(), name: name.into(), texels, bytes, seconds: vec![seconds] }),
+        }
+    }
+
+    fn print(&self) {
+        println!("\n{:<18} {:<14} {:>9} {:>10} {:>7}", "case", "what", "ms", "Mtexel/s", "GB/s");
+        for row in self.rows.borrow_mut().iter_mut() {
+            row.seconds.sort_by(f64::total_cmp);
+            let median = row.seconds[row.seconds.len() / 2];
+            let [mtexels, gigabytes] = [row.texels as f64 / median / 1e6, row.bytes as f64 / median / 1e9];
+            println!("{:<18} {:<14} {:>9.2} {mtexels:>10.1} {gigabytes:>7.2}", row.case, row.name, median * 1e3);
+        }
+    }
+}

@@ -1,0 +1,295 @@
+//! The vectorised backend against the reference: the same bytes, whatever the options, the size and the threads.
+
+use super::{Cpu, Reference};
+use crate::backend::Backend;
+use crate::map::{
+    Channels, Codes, CodesRef, Convention, Depth, Edge, Edges, Encoding, Grid, HeightMap, NormalFormat, Size,
+};
+use crate::ops::normal::{Filter, NormalOptions, NormalPlan, Precision};
+use crate::stream::{MapBands, MapSink};
+use crate::{Rational, Scale};
+
+/// Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014.
+struct SplitMix(u64);
+
+impl SplitMix {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ (mixed >> 31)
+    }
+}
+
+/// Heights of the three types: the same codes for all that can hold them.
+fn maps([width, height]: [usize; 2], mut height_at: impl FnMut(usize, usize) -> u16) -> [HeightMap; 3] {
+    let codes = Grid::from_fn(width, height, &mut height_at).unwrap().into_texels();
+    let bytes = codes.iter().map(|code| *code as u8).collect();
+    let floats = codes.iter().map(|code| f32::from(*code) / 65535.0).collect();
+    [
+        Grid::new(width, height, bytes).unwrap().into(),
+        Grid::new(width, height, codes).unwrap().into(),
+        Grid::new(width, height, floats).unwrap().try_into().unwrap(),
+    ]
+}
+
+fn floats([width, height]: [usize; 2], height_at: impl FnMut(usize, usize) -> f32) -> HeightMap {
+    Grid::from_fn(width, height, height_at).unwrap().try_into().unwrap()
+}
+
+/// Every encoding with every depth that goes with it, all channels, both conventions.
+fn formats() -> Vec<NormalFormat> {
+    let mut formats = Vec::new();
+    for (encoding, depths) in [
+        (Encoding::Unorm, [Depth::Bits8, Depth::Bits16]),
+        (Encoding::Snorm, [Depth::Bits8, Depth::Bits16]),
+        (Encoding::Biased, [Depth::Bits8, Depth::Bits16]),
+        (Encoding::Float, [Depth::Float16, Depth::Float32]),
+    ] {
+        for depth in depths {
+            for channels in [Channels::Xyz, Channels::Xy] {
+                for convention in [Convention::Gl, Convention::Dx] {
+                    formats.push(NormalFormat { encoding, depth, channels, convention });
+                }
+            }
+        }
+    }
+    formats
+}
+
+fn baked(backend: &dyn Backend, map: &HeightMap, options: &NormalOptions, band_rows: usize) -> Codes {
+    let plan = NormalPlan::new(options, map.size(), map.depth()).unwrap();
+    // Poisoned, so that a texel that nobody writes cannot pass.
+    let mut codes = Codes::zeroed(plan.format.depth, plan.size.height() * plan.row_codes());
+    codes.as_mut().bytes_mut().fill(0xa5);
+    let mut sink = MapSink::new(codes.as_mut(), plan.row_codes());
+    backend.normal(&plan, &mut MapBands::new(map, plan.edges.y, band_rows), &mut sink).unwrap();
+    codes
+}
+
+/// The first texel whose bytes differ, in words.
+fn difference(map: &HeightMap, options: &NormalOptions, got: &Codes, expected: &Codes) -> Option<String> {
+    let (got, expected) = (got.as_ref(), expected.as_ref());
+    let code_bytes = options.format.depth.bytes();
+    let at = got.bytes().iter().zip(expected.bytes()).position(|(got, expected)| got != expected)? / code_bytes;
+    let texel = at / options.format.channels.count();
+    let (x, y) = (texel % map.size().width(), texel / map.size().width());
+    let code = |codes: CodesRef<'_>| format!("{:x?}", &codes.bytes()[at * code_bytes..][..code_bytes]);
+    Some(format!(
+        "{} {} code {at}, column {x}, row {y}: {} is not {}; {options:?}",
+        map.size(),
+        map.depth(),
+        code(got),
+        code(expected)
+    ))
+}
+
+fn assert_same_bytes(map: &HeightMap, options: &NormalOptions) {
+    let expected = baked(&Reference, map, options, map.size().height());
+    let got = baked(&Cpu::new(None), map, options, 7);
+    assert_eq!(got.as_ref().len(), expected.as_ref().len());
+    assert_eq!(difference(map, options, &got, &expected), None);
+}
+
+fn scale(text: &str) -> Scale {
+    Scale::texels(text.parse::<Rational>().unwrap())
+}
+
+const SIZES: [[usize; 2]; 9] = [[1, 1], [1, 9], [9, 1], [2, 2], [3, 5], [31, 37], [300, 7], [512, 3], [1031, 3]];
+
+#[test]
+fn every_format_of_random_heights() {
+    let mut random = SplitMix(1);
+    for map in maps([300, 7], |_, _| random.next() as u16) {
+        for format in formats() {
+            for text in ["1", "24", "-0.35", "0.001"] {
+                assert_same_bytes(&map, &NormalOptions { scale: scale(text), format, ..NormalOptions::default() });
+            }
+        }
+    }
+}
+
+#[test]
+fn every_edge_and_filter_at_every_size() {
+    let mut random = SplitMix(2);
+    for size in SIZES {
+        for map in maps(size, |_, _| random.next() as u16) {
+            for filter in [Filter::Central, Filter::Sobel, Filter::Scharr, Filter::Prewitt] {
+                for x in [Edge::Wrap, Edge::Clamp, Edge::Mirror] {
+                    for y in [Edge::Wrap, Edge::Clamp, Edge::Mirror] {
+                        let options = NormalOptions {
+                            scale: scale("7/3"),
+                            filter,
+                            edges: Edges { x, y },
+                            ..NormalOptions::default()
+                        };
+                        assert_same_bytes(&map, &options);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Slopes whose normals are (2, 1, 2)/3, (3, 0, 4)/5 and their like, which lie exactly between two codes.
+#[test]
+fn ties() {
+    let mut random = SplitMix(3);
+    // Levels M/15 apart: slopes of n/2, n/4 and the like on both axes for the scales below.
+    for step in [255 / 15, 65535 / 15] {
+        for map in maps([131, 40], |_, _| (random.next() % 16) as u16 * step) {
+            for text in ["15", "30", "15/2", "10", "20", "45/2", "-45", "40", "12", "30/7", "360/7", "16777215"] {
+                for format in formats() {
+                    assert_same_bytes(&map, &NormalOptions { scale: scale(text), format, ..NormalOptions::default() });
+                }
+            }
+        }
+    }
+}
+
+/// A roof of slope 3/4: every normal is (-3, 0, 4)/5, and 229.5 rounds up.
+#[test]
+fn a_plane_on_a_tie() {
+    let roof = Grid::from_fn(600, 4, |x, _| 2 * x as u16).unwrap().into();
+    let edges = Edges { x: Edge::Mirror, y: Edge::Clamp };
+    let options = NormalOptions { scale: scale("196605/8"), edges, ..NormalOptions::default() };
+    let codes = baked(&Cpu::new(None), &roof, &options, 4);
+    let CodesRef::U8(codes) = codes.as_ref() else { panic!("8 bits were asked for") };
+    for (texel, code) in codes.chunks(3).enumerate() {
+        // At the mirrored borders the slope along the rows is 0.
+        let at_border = [0, 599].contains(&(texel % 600));
+        assert_eq!(code, if at_border { [128, 128, 255] } else { [51, 128, 230] }, "texel {texel}");
+    }
+}
+
+#[test]
+fn the_comparison_sees_one_code() {
+    let map = floats([5, 3], |x, y| (x * y) as f32);
+    let options = NormalOptions::default();
+    let expected = baked(&Reference, &map, &options, 3);
+    let mut sabotaged = expected.clone();
+    sabotaged.as_mut().bytes_mut()[22] ^= 1;
+    let difference = difference(&map, &options, &sabotaged, &expected).unwrap();
+    assert!(difference.contains("code 22, column 2, row 1"), "{difference}");
+}
+
+#[test]
+fn gentle_and_flat_and_steep() {
+    let mut random = SplitMix(4);
+    let flat = maps([97, 5], |_, _| 200);
+    let gentle = maps([97, 5], |_, _| 100 + (random.next() % 3) as u16);
+    let ramps = maps([97, 5], |x, y| (x * 3 + y * 50) as u16);
+    for map in flat.iter().chain(&gentle).chain(&ramps) {
+        for text in ["0", "1/16777215", "0.0001", "0.35", "1000", "16777215", "-16777215", "16777213/16777215"] {
+            for format in formats() {
+                for filter in [Filter::Central, Filter::Scharr] {
+                    let options = NormalOptions { scale: scale(text), format, filter, ..NormalOptions::default() };
+                    assert_same_bytes(map, &options);
+                }
+            }
+        }
+    }
+}
+
+/// Texels that are not square: the two axes have scales of their own.
+#[test]
+fn physical_scales() {
+    let mut random = SplitMix(5);
+    for map in maps([64, 9], |_, _| random.next() as u16) {
+        let scale = Scale::physical("2".parse().unwrap(), "0.7".parse().unwrap(), "0.1".parse().unwrap());
+        for format in formats() {
+            assert_same_bytes(&map, &NormalOptions { scale, format, ..NormalOptions::default() });
+        }
+    }
+}
+
+#[test]
+fn extreme_floats() {
+    let mut random = SplitMix(6);
+    let size = [211, 6];
+    let any_finite = floats(size, |_, _| {
+        let bits = random.next() as u32;
+        if f32::from_bits(bits).is_finite() { f32::from_bits(bits) } else { f32::MAX }
+    });
+    let subnormal = floats(size, |_, _| f32::from_bits(random.next() as u32 & 0x807f_ffff));
+    let greatest = floats(size, |_, _| if random.next() & 1 == 0 { f32::MAX } else { -f32::MAX });
+    let zeros = floats(size, |_, _| if random.next() & 1 == 0 { 0.0 } else { -0.0 });
+    for map in [any_finite, subnormal, greatest, zeros] {
+        for text in ["0", "1", "-24", "1/16777215", "16777215"] {
+            for format in formats() {
+                for filter in [Filter::Central, Filter::Sobel, Filter::Scharr, Filter::Prewitt] {
+                    let options = NormalOptions { scale: scale(text), format, filter, ..NormalOptions::default() };
+                    assert_same_bytes(&map, &options);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn neither_threads_nor_bands_change_a_byte() {
+    let mut random = SplitMix(7);
+    // Wide enough for several strips in a band.
+    for map in maps([4099, 61], |_, _| random.next() as u16) {
+        for precision in [Precision::Exact, Precision::Fast] {
+            let options = NormalOptions { scale: scale("24"), precision, ..NormalOptions::default() };
+            let expected = baked(&Cpu::new(Some(1)), &map, &options, 61);
+            for (threads, band_rows) in [(1, 1), (2, 61), (2, 16), (3, 61), (3, 5)] {
+                let got = baked(&Cpu::new(Some(threads)), &map, &options, band_rows);
+                assert_eq!(difference(&map, &options, &got, &expected), None, "{threads} threads, {band_rows} rows");
+            }
+        }
+    }
+}
+
+/// `fast` may give the neighbour of a code near a boundary, and an f32 up to 16 places away (8.5 are proved).
+#[test]
+fn fast_is_next_to_exact() {
+    let mut random = SplitMix(8);
+    let [bytes, words, _] = maps([512, 64], |_, _| random.next() as u16);
+    for map in [bytes, words] {
+        for format in formats() {
+            for text in ["1", "24", "0.01"] {
+                let exact = NormalOptions { scale: scale(text), format, ..NormalOptions::default() };
+                let fast = NormalOptions { precision: Precision::Fast, ..exact };
+                let [exact, fast] = [exact, fast].map(|options| baked(&Cpu::new(None), &map, &options, 64));
+                let greatest = match (fast.as_ref(), exact.as_ref()) {
+                    (CodesRef::U8(a), CodesRef::U8(b)) => greatest_step(a, b, |a, b| a.wrapping_sub(b) as i8 as f64),
+                    (CodesRef::U16(a), CodesRef::U16(b)) => greatest_step(a, b, |a, b| a.wrapping_sub(b) as i16 as f64),
+                    (CodesRef::F16(a), CodesRef::F16(b)) => {
+                        greatest_step(a, b, |a, b| (a.to_bits() as i32 - b.to_bits() as i32) as f64)
+                    }
+                    (CodesRef::F32(a), CodesRef::F32(b)) => {
+                        greatest_step(a, b, |a, b| (a.to_bits() as i32 - b.to_bits() as i32) as f64)
+                    }
+                    _ => panic!("two depths"),
+                };
+                let bound = if format.depth == Depth::Float32 { 16.0 } else { 1.0 };
+                assert!(greatest <= bound, "{greatest} codes apart: {format:?}, scale {text}");
+            }
+        }
+    }
+}
+
+fn greatest_step<T: Copy>(a: &[T], b: &[T], step: impl Fn(T, T) -> f64) -> f64 {
+    a.iter().zip(b).map(|(a, b)| step(*a, *b).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn the_name_says_what_runs() {
+    let name = Cpu::new(Some(2)).name();
+    let sets = ["avx512", "avx2", "sse2", "neon", "scalar"];
+    assert!(sets.iter().any(|set| name == format!("cpu, 2 threads, {set}")), "{name}");
+}
+
+#[test]
+fn bands_hold_some_rows_for_every_thread() {
+    let rows = |width, height| {
+        let plan =
+            NormalPlan::new(&NormalOptions::default(), Size::new(width, height).unwrap(), crate::map::HeightDepth::U16);
+        Cpu::new(Some(3)).band_rows(&plan.unwrap())
+    };
+    assert_eq!(rows(4096, 4096), 409); // 8 MiB over 4096 (2 + 3) bytes
+    assert_eq!(rows(1 << 24, 4096), 12);
+    assert_eq!(rows(64, 64), 64);
+}
