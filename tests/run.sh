@@ -50,7 +50,7 @@ packages=(
     gcc libc6-dev
     libvulkan1 mesa-vulkan-drivers
     libegl1 libgles2 libgl1-mesa-dri
-    chromium # for SwiftShader's Vulkan driver
+    chromium-common # SwiftShader's Vulkan driver, without the browser
 )
 
 install_packages() {
@@ -102,6 +102,8 @@ choose_software_devices() {
     export __EGL_VENDOR_LIBRARY_FILENAMES=$mesa
     export LIBGL_ALWAYS_SOFTWARE=1 EGL_PLATFORM=surfaceless
     unset DISPLAY WAYLAND_DISPLAY
+    # Mesa complains where there is none.
+    export XDG_RUNTIME_DIR=${XDG_RUNTIME_DIR:-${TMPDIR:-/tmp}}
     # A device that is missing is a failure, not a test passed over.
     export TEXBAKE_REQUIRE_GPU=1
     [ -n "$lavapipe" ] && [ -n "$swiftshader" ] && [ -n "$mesa" ]
