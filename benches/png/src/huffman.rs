@@ -3,11 +3,13 @@
 //! Every block has codes of its own, made from its own bytes; a block that would grow is stored (RFC 1951, 3.2.4).
 //! Every call ends on a byte boundary with a block that is not the last, so stripes concatenate.
 
+/// Bits of the longest code: four codes and seven bits left over fit 64.
 const LONGEST: u32 = 12;
+/// Bytes that share codes.
 const BLOCK: usize = 128 << 10;
 
-pub struct Bits {
-    pub out: Vec<u8>,
+struct Bits {
+    out: Vec<u8>,
     word: u64,
     held: u32,
 }
@@ -58,7 +60,7 @@ fn stored(bits: &mut Bits, data: &[u8]) {
     }
 }
 
-/// A run of `length` zeros after a first zero: symbol of the longest match and the zeros that it covers.
+/// Zeros that the longest match covers (symbol 285).
 const RUN: usize = 258;
 
 fn write_block(bits: &mut Bits, block: &[u8], zero_runs: bool) {
@@ -211,11 +213,10 @@ fn code_lengths(counts: &[u32], longest: u32) -> Vec<u32> {
 
 /// Canonical codes, bit-reversed as deflate wants them, with their lengths.
 fn canonical(lengths: &[u32]) -> Vec<(u16, u32)> {
-    let mut next = [0u16; 17];
-    let mut code = 0;
+    let mut next = [0u16; 16];
     for length in 1..16 {
-        code = (code + lengths.iter().filter(|&&l| l == length as u32 - 1 && l > 0).count() as u16) << 1;
-        next[length] = code;
+        let shorter = lengths.iter().filter(|&&l| l == length as u32 - 1 && l > 0).count() as u16;
+        next[length] = (next[length - 1] + shorter) << 1;
     }
     lengths
         .iter()
