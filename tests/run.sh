@@ -1,0 +1,155 @@
+#!/usr/bin/env bash
+# The test command: installs what the tests need where it is missing, then runs every check.
+# The last line is `N passed, N failed`; the exit status is 0 only if nothing failed.
+#
+# GPU tests run on software devices alone, whatever else the machine has: Mesa's lavapipe and SwiftShader by Vulkan,
+# Mesa's llvmpipe by OpenGL without a display.
+set -uo pipefail
+exec < /dev/null
+cd "$(dirname "$0")/.."
+export CARGO_TERM_COLOR=never
+
+passed=0
+failed=0
+failures=()
+
+# check NAME COMMAND...: one check, passed if the command succeeds.
+check() {
+    local name=$1
+    shift
+    printf '\n== %s\n' "$name"
+    if "$@"; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        failures+=("$name")
+    fi
+}
+
+# check_tests NAME COMMAND...: a run of cargo test, counted by its tests.
+check_tests() {
+    local name=$1 output ok bad status
+    shift
+    printf '\n== %s\n' "$name"
+    output=$(mktemp)
+    "$@" 2>&1 | tee "$output"
+    status=$?
+    read -r ok bad < <(awk '/^test result:/ { ok += $4; bad += $6 } END { print ok + 0, bad + 0 }' "$output")
+    rm -f "$output"
+    passed=$((passed + ok))
+    # A runner that did not build, crashed or found no test has no failed test to count.
+    if [ "$bad" -eq 0 ] && { [ $status -ne 0 ] || [ "$ok" -eq 0 ]; }; then
+        bad=1
+    fi
+    failed=$((failed + bad))
+    [ "$bad" -eq 0 ] || failures+=("$name: $bad")
+}
+
+# What a machine needs besides a Rust toolchain: a linker, and three software devices from independent compilers.
+packages=(
+    gcc libc6-dev
+    libvulkan1 mesa-vulkan-drivers
+    libegl1 libgles2 libgl1-mesa-dri
+    chromium-common # SwiftShader's Vulkan driver, without the browser
+)
+
+install_packages() {
+    local package absent=() sudo=()
+    if ! command -v dpkg-query > /dev/null; then
+        echo "no Debian system: needs by other means what Debian calls ${packages[*]}"
+        return 0
+    fi
+    for package in "${packages[@]}"; do
+        [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2> /dev/null)" = installed ] || absent+=("$package")
+    done
+    if [ ${#absent[@]} -eq 0 ]; then
+        echo "all installed: ${packages[*]}"
+        return 0
+    fi
+    if [ "$(id -u)" -ne 0 ]; then
+        sudo=(sudo -n)
+        if ! sudo -n true 2> /dev/null; then
+            echo "cannot install without root; run this first: apt-get install --no-install-recommends ${absent[*]}"
+            return 1
+        fi
+    fi
+    "${sudo[@]}" apt-get update -q \
+        && "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive \
+            apt-get install -q -y --no-install-recommends "${absent[@]}"
+}
+
+# first_file NAME FOLDER...: the first file of that name (a pattern) under the folders.
+first_file() {
+    local name=$1
+    shift
+    find "$@" -name "$name" 2> /dev/null | sort | head -n 1
+}
+
+choose_software_devices() {
+    local lavapipe swiftshader mesa
+    lavapipe=$(first_file 'lvp_icd*.json' /usr/share/vulkan /usr/local/share/vulkan /etc/vulkan)
+    swiftshader=$(first_file 'vk_swiftshader_icd.json' /usr/lib /usr/lib64 /opt /usr/local/lib)
+    mesa=$(first_file '*mesa.json' /usr/share/glvnd/egl_vendor.d /etc/glvnd/egl_vendor.d)
+    echo "lavapipe: ${lavapipe:-missing}"
+    echo "SwiftShader: ${swiftshader:-missing}"
+    echo "Mesa's EGL: ${mesa:-missing}"
+    export VK_DRIVER_FILES=$lavapipe:$swiftshader
+    # The name of the same setting before Vulkan's loader 1.3.207.
+    export VK_ICD_FILENAMES=$VK_DRIVER_FILES
+    # Drivers beside these may add themselves, and layers may print or slow down.
+    unset VK_ADD_DRIVER_FILES VK_INSTANCE_LAYERS VK_LOADER_LAYERS_ENABLE
+    # llvmpipe, without a window system.
+    export __EGL_VENDOR_LIBRARY_FILENAMES=$mesa
+    export LIBGL_ALWAYS_SOFTWARE=1 EGL_PLATFORM=surfaceless
+    unset DISPLAY WAYLAND_DISPLAY
+    # Mesa complains where there is none.
+    export XDG_RUNTIME_DIR=${XDG_RUNTIME_DIR:-${TMPDIR:-/tmp}}
+    # A device that is missing is a failure, not a test passed over.
+    export TEXBAKE_REQUIRE_GPU=1
+    [ -n "$lavapipe" ] && [ -n "$swiftshader" ] && [ -n "$mesa" ]
+}
+
+# Without cargo-deny: every dependency offers one of the licences that deny.toml allows.
+check_licences() {
+    local allowed others
+    allowed=$(awk '/^allow = \[/ { inside = 1 } inside && /^\]/ { exit } inside' deny.toml \
+        | grep -oE '"[^"]+"' | tr -d '"' | paste -sd '|')
+    others=$(cargo tree --locked --all-features --target all -e normal,build --prefix none --format '{p}: {l}') \
+        || return 1
+    others=$(printf '%s\n' "$others" | sort -u | grep -vE ": .*\b(${allowed//./\\.})\b")
+    echo "cargo-deny is not installed: licences are checked by cargo tree, advisories, bans and sources are not"
+    [ -z "$others" ] || { printf '%s\n' "$others"; return 1; }
+}
+
+check_dependencies() {
+    if cargo deny --version > /dev/null 2>&1; then
+        cargo deny --all-features check
+    else
+        check_licences
+    fi
+}
+
+if ! command -v cargo > /dev/null; then
+    [ -r "$HOME/.cargo/env" ] && . "$HOME/.cargo/env"
+fi
+if ! command -v cargo > /dev/null; then
+    echo "cargo is missing: install a Rust toolchain of at least the version in Cargo.toml, from https://rustup.rs"
+    echo "0 passed, 1 failed"
+    exit 1
+fi
+
+check "packages" install_packages
+check "software devices" choose_software_devices
+check "formatting" cargo fmt --check
+check "lints" cargo clippy --release --all-targets -- -D warnings
+check "lints without the gpu feature" cargo clippy --release --no-default-features --features cli -- -D warnings
+check "lints of the library alone" cargo clippy --release --lib --no-default-features -- -D warnings
+check_tests "tests" cargo test --release --no-fail-fast
+check "dependencies" check_dependencies
+
+if [ $failed -gt 0 ]; then
+    printf '\nfailed:\n'
+    printf '  %s\n' "${failures[@]}"
+fi
+printf '\n%d passed, %d failed\n' "$passed" "$failed"
+[ $failed -eq 0 ]
