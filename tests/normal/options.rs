@@ -93,7 +93,7 @@ fn two_channels_are_the_first_two_of_three() {
 #[test]
 fn snorm_never_writes_its_least_code_and_biased_is_snorm_in_the_middle() {
     let steep = every_difference_pair();
-    let floats = map_f32(64, 64, |x, y| ((x * 7 + y * 5) % 11) as f32);
+    let floats = map_f32(64, 64, |x, _| ((x * 7) % 11) as f32);
     for Subject { name, baker } in every_baker() {
         for map in [&steep, &floats] {
             for (snorm, biased, middle) in [(SNORM8, BIASED8, 128.0), (SNORM16, BIASED16, 32768.0)] {

@@ -7,7 +7,7 @@ mod random;
 
 pub use bakers::{Subject, assert_every_baker, every_baker};
 pub use compare::{Image, assert_same, differences};
-pub use pairs::{every_difference_pair, map_of_pairs};
+pub use pairs::{every_difference_pair, greatest_sum, map_of_pairs};
 pub use random::Random;
 
 use texbake::{

@@ -19,7 +19,7 @@ pub fn every_difference_pair() -> HeightMap {
 
 /// A map of 3 x 3 cells of 16-bit heights; the stencil sums at the cells' middles are the given pairs (Gx, Gy).
 ///
-/// With any filter but central both sums must be even. Magnitudes may reach 65535 times the stencil's middle weight.
+/// With any filter but central both sums must be even; see [`greatest_sum`].
 pub fn map_of_pairs(filter: Filter, pairs: &[[i64; 2]]) -> HeightMap {
     assert!(!pairs.is_empty(), "a map has texels");
     let columns = (pairs.len() as f64).sqrt().ceil() as usize;
@@ -29,14 +29,24 @@ pub fn map_of_pairs(filter: Filter, pairs: &[[i64; 2]]) -> HeightMap {
     map_u16(3 * columns, 3 * rows, |x, y| cells.get(y / 3 * columns + x / 3).unwrap_or(&flat)[y % 3][x % 3])
 }
 
-/// 3 x 3 heights with the stencil sums (Gx, Gy) in the middle.
-fn cell(filter: Filter, pair: [i64; 2]) -> [[u16; 3]; 3] {
-    let (centre, outer) = match filter {
+/// Stencil sums up to here can be made.
+pub fn greatest_sum(filter: Filter) -> i64 {
+    60_000 * weights(filter).0
+}
+
+/// Weights of the stencil's middle row and of the two beside it.
+fn weights(filter: Filter) -> (i64, i64) {
+    match filter {
         Filter::Central => (1, 0),
         Filter::Sobel => (2, 1),
         Filter::Scharr => (10, 3),
         Filter::Prewitt => (1, 1),
-    };
+    }
+}
+
+/// 3 x 3 heights with the stencil sums (Gx, Gy) in the middle.
+fn cell(filter: Filter, pair: [i64; 2]) -> [[u16; 3]; 3] {
+    let (centre, outer) = weights(filter);
     // g = outer a + centre b; the corners make a, which is even, and the sides make b.
     let split = |g: i64| {
         let a = (0..10).step_by(2).find(|a| (g - outer * a) % centre == 0).expect("even sums can be made");
