@@ -1,0 +1,234 @@
+//! Bakes from rows to rows.
+
+use crate::support::{
+    BIASED8, EDGES, FLOAT16, FLOAT32, Random, SNORM16, Subject, UNORM8, every_baker, map_f32, map_u8, map_u16, options,
+};
+use std::sync::{Arc, Mutex};
+use texbake::stream::{Monitor, RowSink, RowSource};
+use texbake::{
+    Baker, Channels, CodesRef, Edge, Edges, Error, HeightDepth, HeightMap, Heights, HeightsMut, NormalFormat,
+    NormalOptions, Result, Size,
+};
+
+/// Rows of a map in memory.
+pub struct MemorySource {
+    map: HeightMap,
+    next_row: usize,
+    /// The row that cannot be read, if there is one.
+    broken_row: Option<usize>,
+}
+
+impl MemorySource {
+    pub fn new(map: HeightMap) -> Self {
+        Self { map, next_row: 0, broken_row: None }
+    }
+
+    fn copy(&self, first_row: usize, rows: HeightsMut<'_>) {
+        let from = first_row * self.map.size().width();
+        match (self.map.heights(), rows) {
+            (Heights::U8(all), HeightsMut::U8(rows)) => rows.copy_from_slice(&all[from..][..rows.len()]),
+            (Heights::U16(all), HeightsMut::U16(rows)) => rows.copy_from_slice(&all[from..][..rows.len()]),
+            (Heights::F32(all), HeightsMut::F32(rows)) => rows.copy_from_slice(&all[from..][..rows.len()]),
+            _ => panic!("rows of another depth were asked for"),
+        }
+    }
+}
+
+fn broken(path: &str) -> Error {
+    Error::Io { path: path.into(), source: std::io::Error::other("it tore") }
+}
+
+impl RowSource for MemorySource {
+    fn size(&self) -> Size {
+        self.map.size()
+    }
+
+    fn depth(&self) -> HeightDepth {
+        self.map.depth()
+    }
+
+    fn read(&mut self, rows: HeightsMut<'_>) -> Result<()> {
+        let texels = match &rows {
+            HeightsMut::U8(rows) => rows.len(),
+            HeightsMut::U16(rows) => rows.len(),
+            HeightsMut::F32(rows) => rows.len(),
+        };
+        let first = self.next_row;
+        self.next_row += texels / self.size().width();
+        assert!(texels % self.size().width() == 0 && texels > 0, "whole rows");
+        assert!(self.next_row <= self.size().height(), "never more rows than are left");
+        if self.broken_row.is_some_and(|broken| (first..self.next_row).contains(&broken)) {
+            return Err(broken("heights"));
+        }
+        self.copy(first, rows);
+        Ok(())
+    }
+
+    fn read_last_row(&mut self, row: HeightsMut<'_>) -> Result<()> {
+        self.copy(self.size().height() - 1, row);
+        self.next_row = 0;
+        Ok(())
+    }
+}
+
+/// What a sink has taken.
+#[derive(Default)]
+struct Taken {
+    bytes: Vec<u8>,
+    finished: bool,
+}
+
+struct MemorySink {
+    taken: Arc<Mutex<Taken>>,
+    /// Bytes from which on the sink is full.
+    capacity: usize,
+}
+
+impl RowSink for MemorySink {
+    fn write(&mut self, rows: CodesRef<'_>) -> Result<()> {
+        let mut taken = self.taken.lock().expect("no panic");
+        assert!(!rows.bytes().is_empty() && !taken.finished, "rows before the end");
+        if taken.bytes.len() + rows.bytes().len() > self.capacity {
+            return Err(broken("normals"));
+        }
+        taken.bytes.extend_from_slice(rows.bytes());
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>) -> Result<()> {
+        self.taken.lock().expect("no panic").finished = true;
+        Ok(())
+    }
+}
+
+/// A bake from rows to rows, and how it can go wrong.
+struct Stream<'a> {
+    map: &'a HeightMap,
+    options: NormalOptions,
+    broken_row: Option<usize>,
+    capacity: usize,
+    monitor: Monitor,
+}
+
+impl<'a> Stream<'a> {
+    fn new(map: &'a HeightMap, options: NormalOptions) -> Self {
+        Self { map, options, broken_row: None, capacity: usize::MAX, monitor: Monitor::default() }
+    }
+
+    fn bake(&self, baker: &Baker) -> (Result<texbake::Ran>, Taken) {
+        let taken = Arc::new(Mutex::new(Taken::default()));
+        let open = || {
+            let source = MemorySource { broken_row: self.broken_row, ..MemorySource::new(self.map.clone()) };
+            Ok(Box::new(source) as Box<dyn RowSource>)
+        };
+        let create = |size: Size| {
+            assert_eq!(size, self.map.size());
+            *taken.lock().expect("no panic") = Taken::default();
+            Ok(Box::new(MemorySink { taken: taken.clone(), capacity: self.capacity }) as Box<dyn RowSink>)
+        };
+        let ran = baker.normal_rows(&open, &create, &self.options, &self.monitor);
+        let taken = std::mem::take(&mut *taken.lock().expect("no panic"));
+        (ran, taken)
+    }
+}
+
+#[test]
+fn rows_give_the_bytes_of_maps() {
+    let mut random = Random::new(41);
+    for height in [1, 2, 3, 5, 8, 33, 257] {
+        let maps = [
+            map_u8(19, height, |_, _| random.bits() as u8),
+            map_u16(21, height, |_, _| random.bits() as u16),
+            map_f32(17, height, |_, _| random.below(999) as f32),
+        ];
+        let two_channels = NormalFormat { channels: Channels::Xy, ..SNORM16 };
+        for (map, format) in maps.iter().zip([UNORM8, two_channels, FLOAT16].into_iter().cycle()) {
+            for edge in EDGES {
+                let options = NormalOptions { edges: Edges { x: Edge::Wrap, y: edge }, ..options("24", format) };
+                for Subject { name, baker } in every_baker() {
+                    let stream = Stream::new(map, options);
+                    let (ran, taken) = stream.bake(baker);
+                    let ran = ran.unwrap_or_else(|error| panic!("{name}: {error}"));
+                    let whole = baker.normal(map, &options).expect("a bake");
+                    assert!(taken.bytes == whole.codes().bytes(), "{name}, {height} rows, {}, {edge}", map.depth());
+                    assert!(taken.finished, "{name}");
+                    assert_eq!(stream.monitor.texels(), map.size().texels() as u64, "{name}");
+                    assert_eq!((ran.size, ran.depth, ran.fallback), (map.size(), map.depth(), None), "{name}");
+                    assert_eq!((ran.scale.x, ran.scale.y, ran.scale.q, ran.scale.exact), (24, 24, 1, true), "{name}");
+                }
+            }
+        }
+    }
+}
+
+/// Above 64 MiB a map that wraps is not held: its last row is read first, then the rows from the top.
+#[test]
+fn a_map_too_large_to_hold_gives_the_same_bytes() {
+    let height = (64 << 20) / (4 * 4099) + 2;
+    let map = map_f32(4099, height, |x, y| ((x * 31 + y * 17) % 101) as f32);
+    let format = NormalFormat { channels: Channels::Xy, ..BIASED8 };
+    let options = options("0.35", format);
+    let mut expected: Option<Vec<u8>> = None;
+    for Subject { name, baker } in every_baker() {
+        // Every other adapter takes the same way through the same backend, and this one would take minutes.
+        if name.contains("swiftshader") {
+            continue;
+        }
+        let (ran, taken) = Stream::new(&map, options).bake(baker);
+        ran.unwrap_or_else(|error| panic!("{name}: {error}"));
+        let expected =
+            expected.get_or_insert_with(|| baker.normal(&map, &options).expect("a bake").codes().bytes().to_vec());
+        assert!(taken.finished && taken.bytes == *expected, "{name}");
+    }
+}
+
+#[test]
+fn a_torn_source_is_the_error_and_nothing_is_finished() {
+    let map = map_u8(16, 500, |x, y| (x * y) as u8);
+    for Subject { name, baker } in every_baker() {
+        for (edge, broken_row) in EDGES.into_iter().flat_map(|edge| [0, 1, 250, 499].map(|row| (edge, row))) {
+            let options = NormalOptions { edges: Edges::both(edge), ..options("1", UNORM8) };
+            let stream = Stream { broken_row: Some(broken_row), ..Stream::new(&map, options) };
+            let (ran, taken) = stream.bake(baker);
+            let error = ran.expect_err("a row cannot be read").to_string();
+            assert_eq!(error, "heights: it tore", "{name}, {edge}, row {broken_row}");
+            assert!(!taken.finished, "{name}, {edge}, row {broken_row}");
+        }
+    }
+}
+
+#[test]
+fn a_full_sink_is_the_error_and_nothing_is_finished() {
+    let map = map_u16(16, 500, |x, y| (x * y) as u16);
+    for Subject { name, baker } in every_baker() {
+        for capacity in [0, 48 * 499] {
+            let stream = Stream { capacity, ..Stream::new(&map, options("1", UNORM8)) };
+            let (ran, taken) = stream.bake(baker);
+            assert_eq!(ran.expect_err("the sink is full").to_string(), "normals: it tore", "{name}, {capacity} bytes");
+            assert!(!taken.finished, "{name}, {capacity} bytes");
+        }
+    }
+}
+
+#[test]
+fn a_cancelled_bake_ends_and_nothing_is_finished() {
+    let map = map_f32(16, 500, |x, y| (x * y) as f32);
+    for Subject { name, baker } in every_baker() {
+        let stream = Stream::new(&map, options("1", FLOAT32));
+        stream.monitor.cancel();
+        let (ran, taken) = stream.bake(baker);
+        assert!(matches!(ran, Err(Error::Cancelled)), "{name}: {ran:?}");
+        assert!(!taken.finished, "{name}");
+    }
+}
+
+#[test]
+fn refused_options_open_no_sink() {
+    let map = map_u8(4, 4, |_, _| 0);
+    for Subject { name, baker } in every_baker() {
+        let create = |_: Size| -> Result<Box<dyn RowSink>> { panic!("{name}: a sink for a bake that cannot be") };
+        let open = || Ok(Box::new(MemorySource::new(map.clone())) as Box<dyn RowSource>);
+        let ran = baker.normal_rows(&open, &create, &options("1e9", UNORM8), &Monitor::default());
+        assert!(matches!(ran, Err(Error::Parameter { parameter: "scale", .. })), "{name}: {ran:?}");
+    }
+}

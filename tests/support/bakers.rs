@@ -1,0 +1,54 @@
+//! Every baker that this machine and this build have.
+
+use super::{Image, assert_same};
+use std::sync::OnceLock;
+use texbake::{Baker, HeightMap, NormalOptions};
+
+/// A baker under test.
+pub struct Subject {
+    pub name: &'static str,
+    pub baker: Baker,
+}
+
+struct Bakers {
+    found: Vec<Subject>,
+    /// Devices that should have been there, and why they are not.
+    missing: Vec<String>,
+}
+
+/// All bakers, opened once per process; each test runs its body once for each of them.
+///
+/// A software GPU that is missing is printed; with `TEXBAKE_REQUIRE_GPU=1` it fails the test.
+pub fn every_baker() -> &'static [Subject] {
+    static BAKERS: OnceLock<Bakers> = OnceLock::new();
+    let Bakers { found, missing } = BAKERS.get_or_init(open);
+    for reason in missing {
+        println!("not tested: {reason}");
+    }
+    let required = std::env::var("TEXBAKE_REQUIRE_GPU").is_ok_and(|value| value == "1");
+    assert!(missing.is_empty() || !required, "TEXBAKE_REQUIRE_GPU=1, but {}", missing.join("; "));
+    found
+}
+
+#[cfg_attr(not(feature = "gpu"), expect(unused_mut, reason = "only GPUs are added, and only they can be missing"))]
+fn open() -> Bakers {
+    let mut found =
+        vec![Subject { name: "reference", baker: Baker::reference() }, Subject { name: "cpu", baker: Baker::cpu() }];
+    let mut missing = Vec::new();
+    #[cfg(feature = "gpu")]
+    for name in ["vulkan:llvmpipe", "gl:llvmpipe", "vulkan:swiftshader"] {
+        match Baker::gpu(Some(name)) {
+            Ok(baker) => found.push(Subject { name, baker }),
+            Err(error) => missing.push(format!("{name}: {error}")),
+        }
+    }
+    Bakers { found, missing }
+}
+
+/// Every baker makes exactly the expected codes of a height map.
+pub fn assert_every_baker(map: &HeightMap, options: &NormalOptions, expected: &Image) {
+    for Subject { name, baker } in every_baker() {
+        let baked = baker.normal(map, options).unwrap_or_else(|error| panic!("{name}, {options:?}: {error}"));
+        assert_same(format_args!("{name}, {} heights, {options:?}", map.depth()), &Image::from(&baked), expected);
+    }
+}
