@@ -1,5 +1,10 @@
 //! One test binary: every topic is a folder, and README.md says what proves what.
 
+#[cfg(feature = "cli")]
+mod cli;
+#[cfg(feature = "gpu")]
+mod gpu;
+mod io;
 mod normal;
 mod oracle;
 mod sabotage;
