@@ -2,10 +2,13 @@
 
 mod backend;
 mod baker;
+#[cfg(feature = "cli")]
+pub mod batch;
 mod error;
 mod exact;
 pub mod io;
 mod map;
+mod names;
 mod ops;
 pub mod stream;
 
