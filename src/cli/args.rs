@@ -23,11 +23,8 @@ pub struct Arguments {
 
 #[derive(Subcommand, Debug)]
 pub enum Command {
-    /// Bake one height map
     Normal(Box<NormalArguments>),
-    /// Bake folders of height maps
     Bake(Box<BakeArguments>),
-    /// List what could run bakes, and what `auto` picks
     Devices(DevicesArguments),
 }
 

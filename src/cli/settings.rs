@@ -61,7 +61,7 @@ pub struct Settings {
     pub channel: Option<Channel>,
 
     /// srgb undoes a wrong conversion of the heights; data is not converted otherwise [default: linear]
-    #[arg(long, value_parser = choice::<ColorSpace>(ColorSpace::NAMES), help_heading = INPUT)]
+    #[arg(long, value_name = "SPACE", value_parser = choice::<ColorSpace>(ColorSpace::NAMES), help_heading = INPUT)]
     pub color_space: Option<ColorSpace>,
 
     /// Layout of a file without header: 1025x1025:u16le; types u8, u16le, u16be, f32le, f32be

@@ -1,0 +1,7 @@
+//! PNG, row by row.
+
+mod read;
+mod write;
+
+pub(super) use read::open;
+pub(super) use write::create;

@@ -1,0 +1,137 @@
+//! PNG height maps.
+
+use crate::error::{Error, Result};
+use crate::io::samples::{DecodedWhole, Layout, Opened, SampleRows, Samples, bytes_mut, len};
+use crate::io::{ReadOptions, limits, srgb};
+use crate::map::{HeightDepth, HeightsMut};
+use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Reader, Transformations};
+use std::fs::File;
+use std::io::{BufReader, ErrorKind};
+use std::path::{Path, PathBuf};
+
+/// Compressed bytes that are read from the file at once.
+const READ_BYTES: usize = 256 << 10;
+
+/// Room for what stands beside the rows, such as colour profiles.
+const METADATA_BYTES: usize = 64 << 20;
+
+/// The rows of a PNG that is not interlaced.
+struct PngRows {
+    path: PathBuf,
+    max_bytes: u64,
+    reader: Reader<BufReader<File>>,
+    layout: Layout,
+    next_row: usize,
+}
+
+/// Opens a PNG: all colour types and bit depths.
+///
+/// Palettes become RGB, and 1, 2 and 4-bit grey becomes the 8-bit codes of the same heights, times 255 / (2^n - 1).
+pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
+    let (mut reader, layout) = start(path, options.max_bytes)?;
+    let info = reader.info();
+    let profile_is_srgb = info.icc_profile.as_deref().is_some_and(srgb::is_named_by);
+    let says_srgb = info.srgb.is_some() || profile_is_srgb;
+    let opened = if info.interlaced {
+        let mut samples = Samples::zeroed(layout.depth, layout.per_row() * layout.size.height());
+        let mut whole = samples.as_mut();
+        reader.next_frame(bytes_mut(&mut whole)).map_err(reason(path))?;
+        reader.finish().map_err(reason(path))?;
+        to_native_order(whole);
+        Opened::new(DecodedWhole::new(layout, samples))
+    } else {
+        let max_bytes = options.max_bytes;
+        Opened::new(PngRows { path: path.into(), max_bytes, reader, layout, next_row: 0 })
+    };
+    Ok(Opened { says_srgb, ..opened })
+}
+
+/// Reads up to the first row; nothing is allocated before the header's claims are checked.
+fn start(path: &Path, max_bytes: u64) -> Result<(Reader<BufReader<File>>, Layout)> {
+    let file = File::open(path).map_err(Error::io(path))?;
+    let stored = file.metadata().map_err(Error::io(path))?.len();
+    let mut decoder = Decoder::new(BufReader::with_capacity(READ_BYTES, file));
+    decoder.set_transformations(Transformations::EXPAND);
+    decoder.set_ignore_text_chunk(true);
+
+    let header = decoder.read_header_info().map_err(reason(path))?;
+    let size = limits::size(path, header.width.into(), header.height.into())?;
+    let row_bits = size.width() as u128 * header.bits_per_pixel() as u128;
+    let rows_at_once = if header.interlaced { size.height() } else { 2 };
+    // A palette index or a grey code below 8 bits grows to four 8-bit samples at most.
+    let decoded_bits = row_bits.max(size.width() as u128 * 32) * rows_at_once as u128;
+    limits::check(path, size, decoded_bits / 8, max_bytes)?;
+    limits::check_deflated(path, size, row_bits.div_ceil(8) * size.height() as u128, stored)?;
+    decoder.set_limits(Limits { bytes: METADATA_BYTES + size.width() * 8 });
+
+    let reader = decoder.read_info().map_err(reason(path))?;
+    if reader.info().frame_control().is_some_and(|frame| (frame.width, frame.height) != reader.info().size()) {
+        return Err(Error::file(path, "its first frame has another size than its header says", DAMAGED));
+    }
+    let (colour, bits) = reader.output_color_type();
+    let depth = if bits == BitDepth::Sixteen { HeightDepth::U16 } else { HeightDepth::U8 };
+    let (colours, alpha) = match colour {
+        ColorType::Grayscale => (1, false),
+        ColorType::GrayscaleAlpha => (1, true),
+        ColorType::Rgb => (3, false),
+        ColorType::Rgba => (3, true),
+        ColorType::Indexed => return Err(Error::file(path, "its palette is missing", DAMAGED)),
+    };
+    Ok((reader, Layout { size, depth, colours, alpha }))
+}
+
+impl SampleRows for PngRows {
+    fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    fn read(&mut self, mut rows: HeightsMut<'_>) -> Result<()> {
+        let count = len(&rows) / self.layout.per_row();
+        for row in bytes_mut(&mut rows).chunks_exact_mut(self.layout.row_bytes()) {
+            let read = self.reader.read_row(row).map_err(reason(&self.path))?;
+            read.ok_or_else(|| Error::file(&self.path, "it holds too few rows", DAMAGED))?;
+        }
+        to_native_order(rows);
+        self.next_row += count;
+        if self.next_row == self.layout.size.height() {
+            // The checksum of the last rows stands behind them.
+            self.reader.finish().map_err(reason(&self.path))?;
+        }
+        Ok(())
+    }
+
+    /// Deflate has no entry points: to go back is to begin again, to go on is to decode.
+    fn seek(&mut self, row: usize) -> Result<()> {
+        if row < self.next_row {
+            (self.reader, _) = start(&self.path, self.max_bytes)?;
+            self.next_row = 0;
+        }
+        let mut skipped = vec![0; self.layout.row_bytes()];
+        while self.next_row < row {
+            self.reader.read_row(&mut skipped).map_err(reason(&self.path))?;
+            self.next_row += 1;
+        }
+        Ok(())
+    }
+}
+
+/// PNG stores 16-bit samples with the most significant byte first.
+fn to_native_order(samples: HeightsMut<'_>) {
+    if let HeightsMut::U16(samples) = samples {
+        samples.iter_mut().for_each(|sample| *sample = u16::from_be(*sample));
+    }
+}
+
+const DAMAGED: &str = "it is damaged; copy or export it again";
+
+/// The decoder's reason, with the file and the way out.
+fn reason(path: &Path) -> impl FnOnce(DecodingError) -> Error + '_ {
+    move |error| match error {
+        DecodingError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
+            Error::file(path, "the file ends before its last row: it is truncated", "copy or export it again")
+        }
+        DecodingError::IoError(error) => Error::io(path)(error),
+        DecodingError::LimitsExceeded => Error::file(path, "it needs too much memory beside its rows", DAMAGED),
+        error => Error::file(path, error, DAMAGED),
+    }
+}

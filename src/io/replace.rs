@@ -1,0 +1,117 @@
+//! Files that appear under their name only when they are complete.
+
+use crate::error::{Error, Result};
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+use tempfile::NamedTempFile;
+
+/// A file beside its target, to take the target's place; dropped before that, it is removed.
+pub(super) struct Replacement {
+    temporary: NamedTempFile,
+    target: PathBuf,
+    failure: Failure,
+}
+
+/// The first failure of a write, for [`Replacement::commit`].
+type Failure = Arc<OnceLock<(ErrorKind, String)>>;
+
+/// The bytes of a [`Replacement`].
+///
+/// Encoders write their last bytes when they are dropped, where an error goes unheard; this remembers it.
+pub(super) struct Output {
+    file: File,
+    failure: Failure,
+}
+
+impl Replacement {
+    /// An empty file in the folder of `target`.
+    ///
+    /// # Errors
+    /// If the folder does not take files, or `target` is a folder or read-only: sooner than after a long bake.
+    pub fn create(target: &Path) -> Result<Self> {
+        // A link keeps its place and its target is replaced.
+        let target = fs::canonicalize(target).unwrap_or_else(|_| target.into());
+        let existing = fs::metadata(&target).ok();
+        if let Some(existing) = &existing {
+            if existing.is_dir() {
+                return Err(Error::file(target, "it is a folder", "give the name of a file"));
+            }
+            if existing.permissions().readonly() {
+                return Err(Error::file(target, "it is read-only", "make it writable, or write elsewhere"));
+            }
+        }
+        let folder = match target.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".texbake-").suffix(".tmp");
+        #[cfg(unix)]
+        {
+            // What File::create asks for; the system takes the umask away. Temporary files are private otherwise.
+            use std::os::unix::fs::PermissionsExt;
+            builder.permissions(fs::Permissions::from_mode(0o666));
+        }
+        let temporary = builder.tempfile_in(folder).map_err(|source| {
+            // The user knows the target, not the temporary file's name.
+            Error::io(&target)(io::Error::new(source.kind(), system_reason(&source)))
+        })?;
+        if let Some(existing) = existing {
+            temporary.as_file().set_permissions(existing.permissions()).map_err(Error::io(&target))?;
+        }
+        Ok(Self { temporary, target, failure: Failure::default() })
+    }
+
+    /// The file, to write.
+    pub fn output(&self) -> Result<Output> {
+        let file = self.temporary.as_file().try_clone().map_err(Error::io(&self.target))?;
+        Ok(Output { file, failure: self.failure.clone() })
+    }
+
+    /// Brings the bytes to the disk, then gives the file its name.
+    pub fn commit(self) -> Result<()> {
+        if let Some((kind, reason)) = self.failure.get() {
+            return Err(Error::io(&self.target)(io::Error::new(*kind, reason.as_str())));
+        }
+        self.temporary.as_file().sync_all().map_err(Error::io(&self.target))?;
+        self.temporary.persist(&self.target).map_err(|failed| Error::io(&self.target)(failed.error))?;
+        Ok(())
+    }
+}
+
+impl Output {
+    fn remember<T>(&self, result: io::Result<T>) -> io::Result<T> {
+        if let Err(error) = &result {
+            // Only the first failure is kept.
+            let _ = self.failure.set((error.kind(), error.to_string()));
+        }
+        result
+    }
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let result = self.file.write(bytes);
+        self.remember(result)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let result = self.file.flush();
+        self.remember(result)
+    }
+}
+
+impl Seek for Output {
+    fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
+        let result = self.file.seek(position);
+        self.remember(result)
+    }
+}
+
+/// The system's words for an error, without the path that `tempfile` adds.
+fn system_reason(error: &io::Error) -> String {
+    let code = error.get_ref().and_then(|inner| inner.source()).map(ToString::to_string);
+    code.unwrap_or_else(|| error.to_string())
+}
