@@ -1,0 +1,3 @@
+//! All tests that stand outside the crate, in one binary.
+
+mod io;
