@@ -1,3 +1,5 @@
 //! All tests that stand outside the crate, in one binary.
 
+#[cfg(feature = "cli")]
+mod cli;
 mod io;

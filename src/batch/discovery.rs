@@ -50,6 +50,11 @@ impl Search {
         Ok(Self { suffixes })
     }
 
+    /// What a height map's stem ends in.
+    pub fn suffixes(&self) -> &[String] {
+        &self.suffixes
+    }
+
     /// The height maps among `paths`: folders are searched in the order of names, links are followed but not in
     /// circles; anything else is taken as it is. What would be found twice at one place counts once. The second list
     /// says which folders could not be searched.
@@ -63,7 +68,7 @@ impl Search {
             }
         }
         let mut seen = HashSet::new();
-        found.retain(|map| seen.insert((std::path::absolute(&map.path).ok(), map.folder.clone())));
+        found.retain(|map| seen.insert((place(&map.path), map.folder.clone())));
         (found, errors)
     }
 
@@ -108,6 +113,12 @@ impl Search {
         let longest = self.suffixes.iter().filter(|suffix| ends_with(rest, suffix)).map(String::len).max()?;
         Some((&rest[..rest.len() - longest], size))
     }
+}
+
+/// A path with its folders written in one way only; a link keeps its own name.
+fn place(path: &Path) -> PathBuf {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    folder.canonicalize().map_or_else(|_| path.to_owned(), |folder| folder.join(path.file_name().unwrap_or_default()))
 }
 
 /// Where `_2k` and the like begins at the end of a stem; its length if it has none.

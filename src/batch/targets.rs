@@ -22,8 +22,8 @@ pub fn check_targets(jobs: &[Job], report: Option<&Path>) -> Result<()> {
     let inputs: HashMap<_, _> = jobs.iter().filter_map(|job| Some((identity(&job.input)?, &job.input))).collect();
     for job in jobs {
         if let Some(input) = identity(&job.output).and_then(|output| inputs.get(&output)) {
-            let reason = format!("the output of {} would overwrite the input {}", job.input.display(), input.display());
-            return Err(Error::file(&job.output, reason, overwritten));
+            let reason = format!("the output of {} would overwrite this input", job.input.display());
+            return Err(Error::file(*input, reason, overwritten));
         }
     }
     if let Some(report) = report

@@ -18,10 +18,11 @@ use texbake::batch::{Found, Job, Report, Search, check_targets, run};
 pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     let reporting = &arguments.reporting;
     let config = Config::find(arguments.config.as_deref(), &arguments.paths).map_err(Failure::settings)?;
-    let (found, errors) = search(arguments, config.as_ref())?.find(&arguments.paths);
+    let search = search(arguments, config.as_ref())?;
+    let (found, errors) = search.find(&arguments.paths);
     errors.iter().for_each(|error| say(format_args!("error: {error}")));
     if found.is_empty() && errors.is_empty() {
-        return Err(nothing_found(arguments));
+        return Err(nothing_found(&arguments.paths, &search));
     }
     if let Some(config) = config.as_ref().filter(|_| !reporting.quiet) {
         describe(config, &found);
@@ -95,11 +96,11 @@ fn describe(config: &Config, found: &[Found]) {
     }
 }
 
-fn nothing_found(arguments: &BakeArguments) -> Failure {
-    let paths: Vec<String> = arguments.paths.iter().map(|path| path.display().to_string()).collect();
+fn nothing_found(paths: &[PathBuf], search: &Search) -> Failure {
+    let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+    let (paths, suffixes) = (paths.join(", "), search.suffixes().join(", "));
     Failure::Failed(format!(
-        "{}: no height map found; their names end in {} (with _2k or the like after it), or as --suffix says; or name the files",
-        paths.join(", "),
-        Search::SUFFIXES.join(", ")
+        "{paths}: no height map found; their names end in {suffixes} (or that and _2k or the like), and in .png, .tif, \
+         .exr or another image format; change that with --suffix, or name the files"
     ))
 }

@@ -7,8 +7,8 @@ use clap::{Args, ValueEnum};
 use std::path::Path;
 use texbake::io::{Channel, ColorSpace, RawLayout, ReadOptions};
 use texbake::{
-    Baker, Channels, Convention, Depth, Edges, Encoding, Error, Filter, NormalFormat, NormalOptions, Precision,
-    Rational, Result, Scale,
+    Baker, Channels, Convention, Depth, Edges, Encoding, Error, Filter, Grid, HeightMap, NormalFormat, NormalOptions,
+    Precision, Rational, Result, Scale,
 };
 
 /// What was set; `None` leaves it to the next source, and at last to the default.
@@ -139,15 +139,18 @@ impl Settings {
     /// What is baked into the file `output`.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for half a physical size; what the extension of `output` has to say.
+    /// [`Error::Parameter`] for options out of range or at odds; what the extension of `output` has to say.
     pub fn normal(&self, output: &Path) -> Result<NormalOptions> {
-        Ok(NormalOptions {
+        let options = NormalOptions {
             scale: self.scale()?,
             filter: self.filter.unwrap_or_default(),
             edges: self.edge.unwrap_or_default(),
             format: self.format(output)?,
             precision: self.precision.unwrap_or_default(),
-        })
+        };
+        // A map of one texel shows what is wrong for every map before any file is opened.
+        let texel = HeightMap::from(Grid::new(1, 1, vec![0u8])?);
+        Baker::reference().normal(&texel, &options).map(|_| options)
     }
 
     fn scale(&self) -> Result<Scale> {
