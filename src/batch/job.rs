@@ -141,3 +141,17 @@ fn fault(input: &Path, panic: &(dyn Any + Send)) -> Error {
     let text = text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no message");
     Error::file(input, format!("a fault in texbake: {text}"), "please report it with this file")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_names_the_file_that_caused_it() {
+        let text = |panic: Box<dyn Any + Send>| fault(Path::new("wall_height.png"), panic.as_ref()).to_string();
+        let said = |message| format!("wall_height.png: a fault in texbake: {message}; please report it with this file");
+        assert_eq!(text(Box::new("index out of range")), said("index out of range"));
+        assert_eq!(text(Box::new(String::from("no row 3"))), said("no row 3"));
+        assert_eq!(text(Box::new(3)), said("no message"));
+    }
+}

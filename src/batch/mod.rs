@@ -14,7 +14,7 @@
 //!     Ok(Job { input: map.path.clone(), output, read, options, baker: baker.clone() })
 //! });
 //! let jobs: Vec<Job> = jobs.collect::<texbake::Result<_>>()?;
-//! check_targets(&jobs)?;
+//! check_targets(&jobs, None)?;
 //! for (job, outcome) in jobs.iter().zip(run(&jobs, 8, &Monitor::default(), &|_| ())) {
 //!     println!("{}: {:?}", job.input.display(), outcome.result);
 //! }

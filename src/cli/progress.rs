@@ -1,7 +1,7 @@
 //! What is seen while files are baked: a bar on a terminal, a line for each file elsewhere.
 
 use super::print::{file_line, say};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, PoisonError};
@@ -102,7 +102,8 @@ impl<'a> Progress<'a> {
         let rate = done as f64 / 1e6 / self.start.elapsed().as_secs_f64();
         bar.set_length(state.expected_texels().max(done));
         bar.set_position(done);
-        bar.set_message(format!("{}/{} files, {rate:.0} Mtexel/s", state.ended, self.jobs.len()));
+        let left = if done == 0 { String::new() } else { format!(", {:#} left", HumanDuration(bar.eta())) };
+        bar.set_message(format!("{}/{} files, {rate:.0} Mtexel/s{left}", state.ended, self.jobs.len()));
     }
 }
 
@@ -117,7 +118,7 @@ impl State {
 }
 
 fn bar() -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {msg}, {eta} left");
+    let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {msg}");
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     bar

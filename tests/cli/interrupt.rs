@@ -43,3 +43,30 @@ fn an_interrupted_folder_leaves_whole_files_and_says_what_is_missing() {
     let not_begun = report["files"].as_array().unwrap().iter().filter(|file| file["result"] == "not_begun");
     assert_eq!(not_begun.count(), count("not_begun"));
 }
+
+#[test]
+fn an_interrupted_file_leaves_nothing() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("out")).unwrap();
+    // A machine that is done before the signal comes gets more to do.
+    for rows in [4096u64, 16384, 65536] {
+        std::fs::File::create(folder.path("heights.raw")).unwrap().set_len(4096 * rows).unwrap();
+        let layout = format!("4096x{rows}:u8");
+        let mut command = folder.command(&["normal", "heights.raw", "--raw", &layout, "-o", "out/normal.png"]);
+        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        while folder.files("out").is_empty() {
+            std::thread::yield_now();
+        }
+        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        if output.status.code() == Some(0) {
+            std::fs::remove_file(folder.path("out/normal.png")).unwrap();
+            continue;
+        }
+        let run = Run::from(output).ends(130);
+        assert!(run.stderr.ends_with("heights.raw was not baked\n"), "{}", run.stderr);
+        assert_eq!(folder.files("out"), [""; 0]);
+        return;
+    }
+    panic!("no run was interrupted");
+}
