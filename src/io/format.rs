@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::map::{Depth, Encoding};
+use image::ImageFormat;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -10,6 +11,18 @@ use std::path::Path;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum FileFormat {
     Png,
+    Tiff,
+    Exr,
+    /// Decoded whole by `image`.
+    Raster(ImageFormat),
+}
+
+/// A file format that is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum OutputFormat {
+    Png,
+    Tiff,
+    Exr,
 }
 
 const KNOWN_INPUTS: &str = "texbake reads PNG, TIFF, EXR, TGA, BMP, JPEG and WebP, and headerless files with --raw";
@@ -24,34 +37,50 @@ impl FileFormat {
         if first.is_empty() {
             return Err(Error::file(path, "the file is empty", "copy or export it again"));
         }
-        Self::of_bytes(&first).ok_or_else(|| Error::file(path, "this is no format that texbake knows", KNOWN_INPUTS))
+        let format = Self::of_bytes(&first).or_else(|| (extension(path) == "tga").then_some(TGA));
+        format.ok_or_else(|| Error::file(path, "this is no format that texbake knows", KNOWN_INPUTS))
     }
 
     fn of_bytes(first: &[u8]) -> Option<Self> {
         match first {
             [0x89, b'P', b'N', b'G', ..] => Some(Self::Png),
+            // TIFF and BigTIFF, least or most significant byte first.
+            [b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..] => Some(Self::Tiff),
+            [0x76, 0x2f, 0x31, 0x01, ..] => Some(Self::Exr),
+            [0xff, 0xd8, 0xff, ..] => Some(Self::Raster(ImageFormat::Jpeg)),
+            [b'B', b'M', ..] => Some(Self::Raster(ImageFormat::Bmp)),
+            [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => Some(Self::Raster(ImageFormat::WebP)),
             _ => None,
         }
     }
+}
 
+/// The one format that does not say what it is.
+const TGA: FileFormat = FileFormat::Raster(ImageFormat::Tga);
+
+impl OutputFormat {
     /// The format that the extension of an output asks for.
-    pub fn of_output(path: &Path) -> Result<Self> {
+    pub fn of(path: &Path) -> Result<Self> {
         match extension(path).as_str() {
             "png" => Ok(Self::Png),
+            "tif" | "tiff" => Ok(Self::Tiff),
+            "exr" => Ok(Self::Exr),
             "" => Err(Error::file(path, "it has no extension, which picks the format", KNOWN_OUTPUTS)),
             other => Err(Error::file(path, format!("the extension .{other} is unknown"), KNOWN_OUTPUTS)),
         }
     }
 }
 
-/// The encoding and depth that the extension of an output suggests: 8-bit unorm for PNG, 16-bit unorm for TIFF, float
-/// for EXR.
+/// The encoding and depth that the extension of an output suggests: 8-bit unorm for PNG, 16-bit unorm for TIFF, 32-bit
+/// float for EXR.
 ///
 /// # Errors
 /// [`Error::File`] lists the known extensions if this is none of them.
 pub fn default_format(path: &Path) -> Result<(Encoding, Depth)> {
-    Ok(match FileFormat::of_output(path)? {
-        FileFormat::Png => (Encoding::Unorm, Depth::Bits8),
+    Ok(match OutputFormat::of(path)? {
+        OutputFormat::Png => (Encoding::Unorm, Depth::Bits8),
+        OutputFormat::Tiff => (Encoding::Unorm, Depth::Bits16),
+        OutputFormat::Exr => (Encoding::Float, Depth::Float32),
     })
 }
 

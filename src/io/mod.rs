@@ -6,14 +6,17 @@
 //! stands for half a file.
 
 mod channel;
+mod exr;
 mod format;
 mod limits;
 mod png;
+mod raster;
 mod raw;
 mod replace;
 mod samples;
 mod sink;
 mod srgb;
+mod tiff;
 
 pub use channel::Channel;
 pub use format::default_format;
@@ -23,7 +26,7 @@ use crate::error::Result;
 use crate::map::{HeightMap, NormalFormat, NormalMap, Size};
 use crate::stream::{RowSink, RowSource, read_map};
 use channel::HeightRows;
-use format::FileFormat;
+use format::{FileFormat, OutputFormat};
 use std::path::Path;
 
 /// How a file becomes a height map.
@@ -81,6 +84,9 @@ pub fn open_heights(path: &Path, options: &ReadOptions) -> Result<HeightFile> {
         Some(layout) => raw::open(path, layout)?,
         None => match FileFormat::of_file(path)? {
             FileFormat::Png => png::open(path, options)?,
+            FileFormat::Tiff => tiff::open(path, options)?,
+            FileFormat::Exr => exr::open(path, options)?,
+            FileFormat::Raster(format) => raster::open(path, format, options)?,
         },
     };
     let (rows, warnings) = HeightRows::new(path, opened, options)?;
@@ -102,8 +108,10 @@ pub fn open_heights(path: &Path, options: &ReadOptions) -> Result<HeightFile> {
 /// a name that cannot be replaced; [`crate::Error::Io`].
 pub fn create_normals(path: &Path, size: Size, format: NormalFormat) -> Result<Box<dyn RowSink>> {
     format.check()?;
-    match FileFormat::of_output(path)? {
-        FileFormat::Png => png::create(path, size, format),
+    match OutputFormat::of(path)? {
+        OutputFormat::Png => png::create(path, size, format),
+        OutputFormat::Tiff => tiff::create(path, size, format),
+        OutputFormat::Exr => exr::create(path, size, format),
     }
 }
 

@@ -110,8 +110,8 @@ impl Seek for Output {
     }
 }
 
-/// The system's words for an error, without the path that `tempfile` adds.
+/// The system's words for an error, without the temporary file's name that `tempfile` adds.
 fn system_reason(error: &io::Error) -> String {
-    let code = error.get_ref().and_then(|inner| inner.source()).map(ToString::to_string);
-    code.unwrap_or_else(|| error.to_string())
+    let reason = error.to_string();
+    reason.split(" at path ").next().unwrap_or(&reason).into()
 }

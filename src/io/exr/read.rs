@@ -1,0 +1,269 @@
+//! EXR height maps.
+
+use crate::error::{Error, Result};
+use crate::io::channel::Channel;
+use crate::io::samples::{Layout, Opened, SampleRows, Samples, copy, len, part, part_mut};
+use crate::io::{ReadOptions, limits};
+use crate::map::{HeightDepth, HeightsMut};
+use exr::block::UncompressedBlock;
+use exr::block::chunk::Chunk;
+use exr::math::Vec2;
+use exr::meta::attribute::{ChannelDescription, SampleType};
+use exr::meta::header::Header;
+use exr::meta::{BlockDescription, MetaData};
+use half::f16;
+use std::fs::File;
+use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+/// The rows of an EXR: one block of scan lines or one row of tiles is decoded at a time, through the file's own table
+/// of block offsets.
+struct ExrRows {
+    path: PathBuf,
+    file: BufReader<File>,
+    file_bytes: u64,
+    meta: MetaData,
+    layer: usize,
+    layout: Layout,
+    /// Columns and rows of a block, and blocks beside each other.
+    block_width: usize,
+    block_rows: usize,
+    across: usize,
+    /// Where each block of the largest level stands, in rows from the top.
+    offsets: Vec<u64>,
+    channels: Vec<BlockChannel>,
+    /// Bytes of a texel, all channels.
+    texel_bytes: usize,
+    next_row: usize,
+    group: Samples,
+    decoded: Option<usize>,
+}
+
+/// A wanted channel of a block.
+#[derive(Debug, Clone, Copy)]
+struct BlockChannel {
+    /// Bytes of a texel in the channels before it.
+    before: usize,
+    half: bool,
+}
+
+/// Opens an EXR: half and float channels, of scan lines or tiles, of every compression that the decoder knows.
+pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
+    let file = File::open(path).map_err(Error::io(path))?;
+    let file_bytes = file.metadata().map_err(Error::io(path))?.len();
+    let mut file = BufReader::new(file);
+    let meta = MetaData::read_from_buffered(&mut file, false).map_err(reason(path))?;
+    let tables = file.stream_position().map_err(Error::io(path))?;
+    let (layer, wanted) = choose(path, &meta.headers, options.channel.as_ref())?;
+    let header = &meta.headers[layer];
+
+    // Everything that the header claims is checked before the decoder allocates for it, tile sizes too.
+    let Vec2(width, height) = header.layer_size;
+    let size = limits::size(path, width as u64, height as u64)?;
+    let (block_width, block_rows) = match header.blocks {
+        BlockDescription::ScanLines => (width, header.compression.scan_lines_per_block()),
+        BlockDescription::Tiles(tiles) => (tiles.tile_size.0, tiles.tile_size.1),
+    };
+    if block_width == 0 || block_rows == 0 {
+        return Err(Error::file(path, "its tiles are empty", DAMAGED));
+    }
+    let texel_bytes = header.channels.bytes_per_pixel;
+    let (across, down) = (width.div_ceil(block_width), height.div_ceil(block_rows));
+    let rows_held = block_rows.min(height);
+    let block_bytes = block_width as u128 * block_rows as u128 * texel_bytes as u128;
+    let held_bytes = width as u128 * rows_held as u128 * wanted.len() as u128 * 4;
+    limits::check(path, size, block_bytes + held_bytes, options.max_bytes)?;
+
+    let skipped: u128 = meta.headers[..layer].iter().map(|header| header.chunk_count as u128 * 8).sum();
+    let table_bytes = across as u128 * down as u128 * 8;
+    if u128::from(tables) + skipped + table_bytes > file_bytes.into() {
+        return Err(Error::file(path, TRUNCATED, "copy or export it again"));
+    }
+    MetaData::validate(&meta.headers, false).map_err(reason(path))?;
+    if header.channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) {
+        return Err(Error::file(path, "some of its channels are subsampled", "export every channel at full size"));
+    }
+
+    let mut table = vec![0; table_bytes as usize];
+    file.seek(SeekFrom::Start(tables + skipped as u64)).map_err(Error::io(path))?;
+    file.read_exact(&mut table).map_err(Error::io(path))?;
+    let offsets = table.as_chunks::<8>().0.iter().map(|offset| u64::from_le_bytes(*offset)).collect();
+
+    let layout = Layout { size, depth: HeightDepth::F32, colours: wanted.len(), alpha: false };
+    let channels = wanted.iter().map(|index| block_channel(path, &header.channels.list, *index));
+    let rows = ExrRows {
+        path: path.into(),
+        file,
+        file_bytes,
+        layer,
+        layout,
+        block_width,
+        block_rows,
+        across,
+        offsets,
+        channels: channels.collect::<Result<_>>()?,
+        texel_bytes,
+        next_row: 0,
+        group: Samples::zeroed(HeightDepth::F32, layout.per_row() * rows_held),
+        decoded: None,
+        meta,
+    };
+    Ok(Opened { channel_found: true, ..Opened::new(rows) })
+}
+
+/// Where a channel stands in a block.
+fn block_channel(path: &Path, channels: &[ChannelDescription], index: usize) -> Result<BlockChannel> {
+    let bytes = |channel: &ChannelDescription| channel.sample_type.bytes_per_sample();
+    if channels[index].sample_type == SampleType::U32 {
+        let reason = format!("its channel {} holds integers", channels[index].name);
+        return Err(Error::file(path, reason, "export it as half or float"));
+    }
+    let before = channels[..index].iter().map(bytes).sum();
+    Ok(BlockChannel { before, half: channels[index].sample_type == SampleType::F16 })
+}
+
+/// Names that say "height", in lower case.
+const HEIGHT_NAMES: [&str; 8] = ["y", "z", "height", "h", "displacement", "disp", "depth", "bump"];
+
+/// The layer, and the channels in it, that hold the heights: one channel, or red, green and blue.
+fn choose(path: &Path, layers: &[Header], channel: Option<&Channel>) -> Result<(usize, Vec<usize>)> {
+    for (index, layer) in layers.iter().enumerate() {
+        let names: Vec<String> = layer.channels.list.iter().map(|channel| channel.name.to_string()).collect();
+        if let Some(channels) = choose_in_layer(&names, channel) {
+            return Ok((index, channels));
+        }
+    }
+    let names: Vec<String> =
+        layers.iter().flat_map(|layer| &layer.channels.list).map(|channel| channel.name.to_string()).collect();
+    let names = names.join(", ");
+    let reason = match channel {
+        None => format!("it is not clear which of its channels holds the heights: {names}"),
+        Some(channel) => format!("it has no channel {channel}, only {names}"),
+    };
+    Err(Error::file(path, reason, "choose one by its name with --channel"))
+}
+
+/// The channels that hold the heights, if the names are clear.
+fn choose_in_layer(names: &[String], channel: Option<&Channel>) -> Option<Vec<usize>> {
+    let named = |name: &str| names.iter().position(|candidate| candidate == name);
+    let is_alpha = |name: &str| name == "A" || name.ends_with(".A");
+    let colours: Vec<usize> = (0..names.len()).filter(|index| !is_alpha(&names[*index])).collect();
+    let rgb = || Some(vec![named("R")?, named("G")?, named("B")?]);
+    let only = || (colours.len() == 1).then(|| colours.clone());
+    let one = |name: &str| named(name).map(|index| vec![index]);
+    match channel {
+        Some(Channel::Named(name)) => one(name),
+        Some(Channel::A) => one("A"),
+        Some(Channel::R) => one("R").or_else(only),
+        Some(Channel::G) => one("G").or_else(only),
+        Some(Channel::B) => one("B").or_else(only),
+        Some(Channel::Luma) => rgb().or_else(only),
+        None => only().or_else(|| rgb().filter(|_| colours.len() == 3)).or_else(|| {
+            let last_part = |name: &str| name.rsplit('.').next().unwrap_or(name).to_ascii_lowercase();
+            let says_height = |index: &&usize| HEIGHT_NAMES.contains(&last_part(&names[**index]).as_str());
+            let heights: Vec<usize> = colours.iter().filter(says_height).copied().collect();
+            // Beside colours, Z and Y are not the heights of a texture but the depths of a picture.
+            (heights.len() == 1 && rgb().is_none()).then_some(heights)
+        }),
+    }
+}
+
+impl ExrRows {
+    /// Decodes the block of scan lines or the row of tiles `index`.
+    fn decode(&mut self, index: usize) -> Result<()> {
+        if self.decoded == Some(index) {
+            return Ok(());
+        }
+        self.decoded = None;
+        let (width, height) = (self.layout.size.width(), self.layout.size.height());
+        for column in 0..self.across {
+            let block = self.read_block(self.offsets[index * self.across + column])?;
+            let (left, top) = (column * self.block_width, index * self.block_rows);
+            let (columns, rows) = (self.block_width.min(width - left), self.block_rows.min(height - top));
+            let expected = (self.layer, Vec2(0, 0), Vec2(left, top), Vec2(columns, rows));
+            let found = (block.index.layer, block.index.level, block.index.pixel_position, block.index.pixel_size);
+            if found != expected || block.data.len() != columns * rows * self.texel_bytes {
+                return Err(Error::file(&self.path, "a block is not where its table says", DAMAGED));
+            }
+            self.put(&block.data, left, columns, rows);
+        }
+        self.decoded = Some(index);
+        Ok(())
+    }
+
+    fn read_block(&mut self, offset: u64) -> Result<UncompressedBlock> {
+        // An offset that was never written is zero: the file is incomplete.
+        if offset == 0 || offset >= self.file_bytes {
+            return Err(Error::file(&self.path, TRUNCATED, "copy or export it again"));
+        }
+        self.file.seek(SeekFrom::Start(offset)).map_err(Error::io(&self.path))?;
+        let chunk = Chunk::read(&mut self.file, &self.meta).map_err(reason(&self.path))?;
+        UncompressedBlock::decompress_chunk(chunk, &self.meta, false).map_err(reason(&self.path))
+    }
+
+    /// Copies the wanted channels of a block to their place; a block holds, line by line, channel after channel.
+    fn put(&mut self, data: &[u8], left: usize, columns: usize, rows: usize) {
+        let Samples::F32(group) = &mut self.group else { unreachable!("EXR heights are floats") };
+        let (per_texel, per_row) = (self.layout.per_texel(), self.layout.per_row());
+        for row in 0..rows {
+            let line = &data[row * columns * self.texel_bytes..][..columns * self.texel_bytes];
+            for (sample, channel) in self.channels.iter().enumerate() {
+                let from = &line[channel.before * columns..];
+                let to = &mut group[row * per_row + left * per_texel + sample..];
+                let to = to.iter_mut().step_by(per_texel).take(columns);
+                if channel.half {
+                    to.zip(from.as_chunks::<2>().0).for_each(|(to, from)| *to = f16::from_ne_bytes(*from).to_f32());
+                } else {
+                    to.zip(from.as_chunks::<4>().0).for_each(|(to, from)| *to = f32::from_ne_bytes(*from));
+                }
+            }
+        }
+    }
+}
+
+impl SampleRows for ExrRows {
+    fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    fn read(&mut self, mut rows: HeightsMut<'_>) -> Result<()> {
+        let per_row = self.layout.per_row();
+        let (mut done, wanted) = (0, len(&rows) / per_row);
+        while done < wanted {
+            let index = self.next_row / self.block_rows;
+            self.decode(index)?;
+            let from = self.next_row - index * self.block_rows;
+            let count = (self.block_rows - from).min(wanted - done);
+            let decoded = part(self.group.as_ref(), from * per_row..(from + count) * per_row);
+            copy(decoded, &mut part_mut(&mut rows, done * per_row..(done + count) * per_row));
+            self.next_row += count;
+            done += count;
+        }
+        Ok(())
+    }
+
+    fn seek(&mut self, row: usize) -> Result<()> {
+        self.next_row = row;
+        Ok(())
+    }
+}
+
+const TRUNCATED: &str = "the file ends before its last row: it is truncated";
+const DAMAGED: &str = "it is damaged; copy or export it again";
+
+/// The decoder's reason, with the file and the way out.
+fn reason(path: &Path) -> impl FnOnce(exr::error::Error) -> Error + '_ {
+    use exr::error::Error::{Io, NotSupported};
+    move |error| match error {
+        Io(error) if error.kind() == ErrorKind::UnexpectedEof => {
+            Error::file(path, TRUNCATED, "copy or export it again")
+        }
+        Io(error) => Error::io(path)(error),
+        NotSupported(what) => Error::file(path, what, "export it as a flat image with ZIP compression"),
+        // What the decoder says when bytes are missing.
+        error if error.to_string().contains("reference to missing bytes") => {
+            Error::file(path, TRUNCATED, "copy or export it again")
+        }
+        error => Error::file(path, error, DAMAGED),
+    }
+}

@@ -1,0 +1,7 @@
+//! TIFF, GeoTIFF and BigTIFF, by strips and tiles.
+
+mod read;
+mod write;
+
+pub(super) use read::open;
+pub(super) use write::create;

@@ -1,0 +1,269 @@
+//! TIFF height maps.
+
+use crate::error::{Error, Result};
+use crate::io::samples::{Layout, Opened, SampleRows, Samples, copy, len, part, part_mut};
+use crate::io::{ReadOptions, limits, srgb};
+use crate::map::{HeightDepth, HeightsMut};
+use std::fs::File;
+use std::io::{BufReader, ErrorKind};
+use std::path::{Path, PathBuf};
+use tiff::decoder::{ChunkType, Decoder, DecodingResult, DecodingSampleType, Limits};
+use tiff::tags::{PlanarConfiguration, Tag};
+use tiff::{ColorType, TiffError};
+
+/// The rows of a TIFF: one strip or one row of tiles is decoded at a time.
+struct TiffRows {
+    path: PathBuf,
+    decoder: Decoder<BufReader<File>>,
+    layout: Layout,
+    grid: Grid,
+    next_row: usize,
+    /// The decoded group, and its index.
+    group: Samples,
+    decoded: Option<usize>,
+}
+
+/// How a TIFF is cut into strips or tiles.
+#[derive(Debug, Clone, Copy)]
+struct Grid {
+    /// Columns and rows of a strip or tile.
+    chunk_width: usize,
+    chunk_rows: usize,
+    /// Chunks beside each other.
+    across: usize,
+    /// Chunks below each other.
+    down: usize,
+    /// Chunks for the same texels: one for each sample if samples stand in planes of their own.
+    planes: usize,
+}
+
+/// Opens a TIFF: 8 and 16-bit integers, signed ones too, and floats of 16, 32 and 64 bits.
+///
+/// A signed height v has the code v + 2^(b-1): the slopes are the same.
+pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
+    let file = File::open(path).map_err(Error::io(path))?;
+    let max_bytes = options.max_bytes.try_into().unwrap_or(usize::MAX);
+    let mut decoder_limits = Limits::default();
+    decoder_limits.decoding_buffer_size = max_bytes;
+    decoder_limits.intermediate_buffer_size = max_bytes;
+    let decoder = Decoder::new(BufReader::new(file)).map_err(reason(path))?;
+    let mut decoder = decoder.with_limits(decoder_limits);
+
+    let (width, height) = decoder.dimensions().map_err(reason(path))?;
+    let size = limits::size(path, width.into(), height.into())?;
+    let (colours, alpha) = colours(path, &mut decoder)?;
+    let planar = tag(path, &mut decoder, Tag::PlanarConfiguration, PlanarConfiguration::Chunky.to_u16())?;
+    let planes = if planar == PlanarConfiguration::Planar.to_u16() { colours + usize::from(alpha) } else { 1 };
+    let (chunk_width, chunk_rows) = decoder.chunk_dimensions();
+    let grid = match decoder.get_chunk_type() {
+        ChunkType::Strip => {
+            let chunk_rows = size.height().min(chunk_rows as usize);
+            let down = size.height().div_ceil(chunk_rows);
+            Grid { chunk_width: size.width(), chunk_rows, across: 1, down, planes }
+        }
+        ChunkType::Tile => {
+            let (chunk_width, chunk_rows) = (chunk_width as usize, chunk_rows as usize);
+            let (across, down) = (size.width().div_ceil(chunk_width), size.height().div_ceil(chunk_rows));
+            Grid { chunk_width, chunk_rows, across, down, planes }
+        }
+    };
+    // The decoder holds a chunk in the file's own type, of 8 bytes a sample at most, beside the decoded group.
+    let texels = (grid.across * grid.chunk_width) as u128 * grid.chunk_rows as u128;
+    let samples = (colours + usize::from(alpha)) as u128;
+    let bits = decoder.colortype().map_err(reason(path))?.bit_depth();
+    limits::check(path, size, texels * samples * u128::from(bits.div_ceil(8)), options.max_bytes)?;
+
+    let sample_type = decoder.image_chunk_buffer_layout(0).map_err(reason(path))?.sample_type;
+    let depth = depth(path, sample_type, bits)?;
+    let layout = Layout { size, depth, colours, alpha };
+    let no_data = no_data(path, &mut decoder, sample_type)?;
+    let profile = decoder.find_tag(Tag::IccProfile).ok().flatten().and_then(|value| value.into_u8_vec().ok());
+    let mut warnings = Vec::new();
+    if sample_type == Some(DecodingSampleType::F64) {
+        warnings.push("its 64-bit floats are rounded to 32 bits".into());
+    }
+    let rows_held = grid.chunk_rows.min(size.height());
+    let group = Samples::zeroed(depth, layout.per_row() * rows_held);
+    let rows = TiffRows { path: path.into(), decoder, layout, grid, next_row: 0, group, decoded: None };
+    let says_srgb = profile.is_some_and(|profile| srgb::is_named_by(&profile));
+    Ok(Opened { no_data, says_srgb, warnings, ..Opened::new(rows) })
+}
+
+/// Colours or bands of a texel, and whether alpha follows them.
+fn colours(path: &Path, decoder: &mut Decoder<BufReader<File>>) -> Result<(usize, bool)> {
+    // 1 and 2: the last sample is associated or unassociated alpha (TIFF 6.0, ExtraSamples).
+    let extra = decoder.find_tag(Tag::ExtraSamples).map_err(reason(path))?;
+    let extra = extra.and_then(|value| value.into_u16_vec().ok()).unwrap_or_default();
+    let ends_with_alpha = matches!(extra.as_slice(), [1 | 2]);
+    match decoder.colortype().map_err(reason(path))? {
+        ColorType::Gray(_) => Ok((1, false)),
+        ColorType::GrayA(_) => Ok((1, true)),
+        ColorType::RGB(_) => Ok((3, false)),
+        ColorType::RGBA(_) => Ok((3, true)),
+        ColorType::Multiband { num_samples, .. } if ends_with_alpha => Ok((usize::from(num_samples) - 1, true)),
+        ColorType::Multiband { num_samples, .. } => Ok((num_samples.into(), false)),
+        other => {
+            let reason = format!("its colours are {other:?}, not grey or RGB");
+            Err(Error::file(path, reason, "convert it to grey"))
+        }
+    }
+}
+
+/// The type of a height for a type of samples.
+fn depth(path: &Path, sample_type: Option<DecodingSampleType>, bits: u8) -> Result<HeightDepth> {
+    use DecodingSampleType::{F16, F32, F64, I8, I16, U8, U16};
+    match (sample_type, bits) {
+        (Some(U8 | I8), 8) => Ok(HeightDepth::U8),
+        (Some(U16 | I16), 16) => Ok(HeightDepth::U16),
+        (Some(F16), 16) | (Some(F32), 32) | (Some(F64), 64) => Ok(HeightDepth::F32),
+        _ => {
+            let reason = format!("its samples are {bits}-bit integers, which texbake does not read from TIFF");
+            Err(Error::file(path, reason, "convert it to 16-bit integers or 32-bit floats"))
+        }
+    }
+}
+
+/// GDAL's no-data value as a height: decimal text in tag 42113.
+fn no_data(
+    path: &Path,
+    decoder: &mut Decoder<BufReader<File>>,
+    sample_type: Option<DecodingSampleType>,
+) -> Result<Option<f32>> {
+    let Some(text) = decoder.find_tag(Tag::GdalNodata).map_err(reason(path))? else { return Ok(None) };
+    let text = text.into_string().map_err(reason(path))?;
+    let value = text.trim_matches(['\0', ' ']).parse::<f64>().ok();
+    Ok(value.map(|value| match sample_type {
+        Some(DecodingSampleType::I8) => (value + 128.0) as f32,
+        Some(DecodingSampleType::I16) => (value + 32768.0) as f32,
+        _ => value as f32,
+    }))
+}
+
+/// A tag with one small number.
+fn tag(path: &Path, decoder: &mut Decoder<BufReader<File>>, tag: Tag, default: u16) -> Result<u16> {
+    Ok(decoder.find_tag_unsigned(tag).map_err(reason(path))?.unwrap_or(default))
+}
+
+impl TiffRows {
+    /// Decodes the strip or the row of tiles `index`.
+    fn decode(&mut self, index: usize) -> Result<()> {
+        if self.decoded == Some(index) {
+            return Ok(());
+        }
+        self.decoded = None;
+        let Grid { chunk_width, chunk_rows, across, down, planes } = self.grid;
+        let per_texel = if planes > 1 { 1 } else { self.layout.per_texel() };
+        let rows = chunk_rows.min(self.layout.size.height() - index * chunk_rows);
+        for (plane, column) in (0..planes).flat_map(|plane| (0..across).map(move |column| (plane, column))) {
+            let chunk = ((plane * down + index) * across + column) as u32;
+            let samples = self.decoder.read_chunk(chunk).map_err(reason(&self.path))?;
+            let left = column * chunk_width;
+            let place = Place {
+                width: chunk_width.min(self.layout.size.width() - left),
+                rows,
+                per_texel,
+                first: left * self.layout.per_texel() + plane,
+                texel_stride: self.layout.per_texel(),
+                row_stride: self.layout.per_row(),
+            };
+            if !place.put_samples(&samples, &mut self.group) {
+                return Err(Error::file(&self.path, "a strip or tile has the wrong size", DAMAGED));
+            }
+        }
+        self.decoded = Some(index);
+        Ok(())
+    }
+}
+
+/// Where a chunk's samples stand among those of its group.
+struct Place {
+    width: usize,
+    rows: usize,
+    /// Samples of a texel in the chunk.
+    per_texel: usize,
+    /// The first sample.
+    first: usize,
+    texel_stride: usize,
+    row_stride: usize,
+}
+
+impl Place {
+    /// Copies a decoded chunk to its place as heights; false if it has another size or type than its header says.
+    fn put_samples(&self, chunk: &DecodingResult, group: &mut Samples) -> bool {
+        match (chunk, group) {
+            (DecodingResult::U8(from), Samples::U8(to)) => self.put(from, to, |v| v),
+            (DecodingResult::I8(from), Samples::U8(to)) => self.put(from, to, |v| (v as u8) ^ 0x80),
+            (DecodingResult::U16(from), Samples::U16(to)) => self.put(from, to, |v| v),
+            (DecodingResult::I16(from), Samples::U16(to)) => self.put(from, to, |v| (v as u16) ^ 0x8000),
+            (DecodingResult::F16(from), Samples::F32(to)) => self.put(from, to, |v| v.to_f32()),
+            (DecodingResult::F32(from), Samples::F32(to)) => self.put(from, to, |v| v),
+            (DecodingResult::F64(from), Samples::F32(to)) => self.put(from, to, |v| v as f32),
+            _ => false,
+        }
+    }
+
+    fn put<S: Copy, T>(&self, from: &[S], to: &mut [T], convert: impl Fn(S) -> T) -> bool {
+        let row_length = self.width * self.per_texel;
+        if from.len() != row_length * self.rows {
+            return false;
+        }
+        for (row, from) in from.chunks_exact(row_length).enumerate() {
+            let to = &mut to[row * self.row_stride + self.first..];
+            if self.per_texel == self.texel_stride {
+                to.iter_mut().zip(from).for_each(|(to, from)| *to = convert(*from));
+            } else {
+                let to = to.iter_mut().step_by(self.texel_stride);
+                to.zip(from).for_each(|(to, from)| *to = convert(*from));
+            }
+        }
+        true
+    }
+}
+
+impl SampleRows for TiffRows {
+    fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    fn read(&mut self, mut rows: HeightsMut<'_>) -> Result<()> {
+        let per_row = self.layout.per_row();
+        let (mut done, wanted) = (0, len(&rows) / per_row);
+        while done < wanted {
+            let index = self.next_row / self.grid.chunk_rows;
+            self.decode(index)?;
+            let from = self.next_row - index * self.grid.chunk_rows;
+            let count = (self.grid.chunk_rows - from).min(wanted - done);
+            let decoded = part(self.group.as_ref(), from * per_row..(from + count) * per_row);
+            copy(decoded, &mut part_mut(&mut rows, done * per_row..(done + count) * per_row));
+            self.next_row += count;
+            done += count;
+        }
+        Ok(())
+    }
+
+    fn seek(&mut self, row: usize) -> Result<()> {
+        self.next_row = row;
+        Ok(())
+    }
+}
+
+const DAMAGED: &str = "it is damaged; copy or export it again";
+
+/// The decoder's reason, with the file and the way out.
+fn reason(path: &Path) -> impl FnOnce(TiffError) -> Error + '_ {
+    move |error| match error {
+        TiffError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
+            Error::file(path, "the file ends before its last row: it is truncated", "copy or export it again")
+        }
+        // The decoders of compressed strips report damage as the system's errors, without a system's number.
+        TiffError::IoError(error) if error.raw_os_error().is_none() => Error::file(path, error, DAMAGED),
+        TiffError::IoError(error) => Error::io(path)(error),
+        TiffError::LimitsExceeded => {
+            Error::file(path, "it needs more memory than the limit", "raise it with --max-bytes")
+        }
+        TiffError::UnsupportedError(error) => {
+            Error::file(path, error, "convert it to 8 or 16-bit grey, or to 32-bit floats")
+        }
+        error => Error::file(path, error, DAMAGED),
+    }
+}
