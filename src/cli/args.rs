@@ -53,22 +53,21 @@ pub struct NormalArguments {
 }
 
 /// Bake folders of height maps into a folder of normal maps
-///
-/// Folders are searched for files such as wall_height.png, wall_disp_2k.exr or Wall_Displacement.tif; files are taken
-/// as they are. wall_height_2k.png becomes wall_normal_2k.png, in the same folder below --out.
-///
-/// Settings come from the command line, else from the last [[override]] in texbake.toml whose glob matches the
-/// file's path below the given folder, else from its [defaults]. A key is an option without its dashes:
-///
-///     suffix = ["_height", "_dem"]
-///     [defaults]
-///     scale = 24
-///     [[override]]
-///     glob = "**/dem_*"
-///     edge = "clamp"
 #[derive(Args, Debug)]
-#[command(verbatim_doc_comment)]
 #[command(after_help = "\
+Folders are searched for files such as wall_height.png, wall_disp_2k.exr or Wall_Displacement.tif;
+files are taken as they are. tex/brick/wall_height_2k.png becomes brick/wall_normal_2k.png in --out.
+
+Settings come from the command line, else from the last [[override]] in texbake.toml whose glob
+matches the file's path below the folder, else from its [defaults]. A key is an option's name:
+
+  suffix = [\"_height\", \"_dem\"]
+  [defaults]
+  scale = 24
+  [[override]]
+  glob = \"**/dem_*\"
+  edge = \"clamp\"
+
 Examples:
   texbake bake textures --out baked
   texbake bake textures --out baked --scale 24 --convention dx --format tif --bits 16

@@ -44,7 +44,7 @@ pub struct Settings {
     #[arg(long, value_parser = choice::<Encoding>(Encoding::NAMES), help_heading = OUTPUT)]
     pub encoding: Option<Encoding>,
 
-    /// Bits of a code; f is for float [default: 8 in PNG, 16 in TIFF, 16f in EXR files]
+    /// Bits of a code; f is for float [default: 8 in PNG, 16 in TIFF, 32f in EXR files]
     #[arg(long, value_parser = choice::<Depth>(Depth::NAMES), help_heading = OUTPUT)]
     pub bits: Option<Depth>,
 

@@ -1,7 +1,7 @@
 //! `texbake bake`: folders in, folders out.
 
 use super::support::{Folder, bumps8, bumps16};
-use texbake::NormalOptions;
+use texbake::{Baker, Depth, Encoding, NormalFormat, NormalOptions};
 
 #[test]
 fn a_tree_of_height_maps_becomes_a_tree_of_normal_maps() {
@@ -79,6 +79,30 @@ fn names_suffixes_and_formats_can_be_chosen() {
     assert_eq!(folder.files("c"), ["sub/hill/N_8k.png"]);
     run(&["--out", "d", "--suffix", "_dem", "--jobs", "1", "--bits", "16"]);
     assert_eq!(folder.files("d"), ["sub/hill_normal_8k.png"]);
+}
+
+#[test]
+fn every_output_format_holds_the_reference_in_its_usual_depth() {
+    let folder = Folder::new();
+    let map = folder.grey16("tex/a_height.png", 17, 13, bumps16);
+    let cases: [(&str, &[&str], Encoding, Depth); 5] = [
+        ("png", &[], Encoding::Unorm, Depth::Bits8),
+        ("tif", &[], Encoding::Unorm, Depth::Bits16),
+        ("tif", &["--encoding", "float"], Encoding::Float, Depth::Float32),
+        ("exr", &["--bits", "16f"], Encoding::Float, Depth::Float16),
+        ("exr", &[], Encoding::Float, Depth::Float32),
+    ];
+    for (extension, arguments, encoding, depth) in cases {
+        folder.run(&[&["bake", "tex", "--out", "out", "-q", "--format", extension], arguments].concat()).ends(0);
+        let options = NormalOptions {
+            format: NormalFormat { encoding, depth, ..NormalFormat::default() },
+            ..NormalOptions::default()
+        };
+        let expected = folder.path(&format!("expected.{extension}"));
+        Baker::reference().normal(&map, &options).unwrap().write(&expected).unwrap();
+        let output = folder.path(&format!("out/a_normal.{extension}"));
+        assert!(std::fs::read(output).unwrap() == std::fs::read(expected).unwrap(), "{extension} {encoding} {depth}");
+    }
 }
 
 #[test]
