@@ -1,5 +1,6 @@
 //! One error type, by cause.
 
+use std::io::ErrorKind;
 use std::path::PathBuf;
 
 /// What a fallible call of this crate returns.
@@ -37,7 +38,7 @@ pub enum Error {
     },
 
     /// The operating system refused to read or write.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {source}{}", path.display(), remedy(source))]
     Io {
         /// The file.
         path: PathBuf,
@@ -86,6 +87,18 @@ pub enum Error {
     /// The bake was stopped from outside.
     #[error("stopped before it was complete; no file was left under its final name")]
     Cancelled,
+}
+
+/// What a user can do about the system's reason, where that is clear.
+fn remedy(error: &std::io::Error) -> &'static str {
+    match error.kind() {
+        ErrorKind::NotFound => "; check how its path is written",
+        ErrorKind::PermissionDenied => "; change its permissions, or choose another file",
+        ErrorKind::ReadOnlyFilesystem => "; choose another folder",
+        ErrorKind::NotADirectory | ErrorKind::AlreadyExists => "; a part of its path is a file, choose another folder",
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "; make room, or choose another disk",
+        _ => "",
+    }
 }
 
 impl Error {

@@ -2,11 +2,14 @@
 
 mod backend;
 mod baker;
+#[cfg(feature = "cli")]
+pub mod batch;
 mod devices;
 mod error;
 mod exact;
 pub mod io;
 mod map;
+mod names;
 mod ops;
 pub mod stream;
 

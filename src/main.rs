@@ -1,2 +1,7 @@
-//! texbake
-fn main() {}
+//! The program: see `texbake --help`.
+
+mod cli;
+
+fn main() -> std::process::ExitCode {
+    cli::run()
+}

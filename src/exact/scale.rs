@@ -3,6 +3,7 @@
 use super::rational::{Rational, gcd};
 use crate::error::{Error, Result};
 use crate::map::Size;
+use std::fmt;
 
 /// How high h = 1 is.
 ///
@@ -133,6 +134,24 @@ impl AxisScale {
     fn of(x: i128, y: i128, q: i128, exact: bool) -> Self {
         debug_assert!(x.abs() <= GREATEST_PART && y.abs() <= GREATEST_PART && (1..=GREATEST_PART).contains(&q));
         Self { x: x as i32, y: y as i32, q: q as u32, exact }
+    }
+}
+
+impl fmt::Display for Scale {
+    /// `7/3`, or `2 x 2 by 1/10 high`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Texels(scale) => scale.fmt(f),
+            Self::Physical { size: [width, height], depth } => write!(f, "{width} x {height} by {depth} high"),
+        }
+    }
+}
+
+impl fmt::Display for AxisScale {
+    /// `256/5`, or `256/5,128/5` for x and y.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y] = [self.x, self.y].map(|part| Rational::new(part.into(), self.q.into()).unwrap_or(0.into()));
+        if x == y { x.fmt(f) } else { write!(f, "{x},{y}") }
     }
 }
 

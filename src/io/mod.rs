@@ -148,3 +148,7 @@ impl NormalMap {
         sink.finish()
     }
 }
+
+crate::names::named! {
+    ColorSpace "color-space" { Linear = "linear", Srgb = "srgb" }
+}

@@ -1,7 +1,9 @@
 //! What the numbers of a map mean.
 
 use crate::error::{Error, Result};
+use crate::names::named;
 use std::fmt;
+use std::str::FromStr;
 
 /// How a component v in [-1, 1] becomes a code of b bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -168,23 +170,33 @@ impl NormalFormat {
     }
 }
 
-/// Names of the variants, as the command line and reports write them.
-macro_rules! display_as {
-    ($($type:ident { $($variant:ident = $name:literal),* })*) => {$(
-        impl fmt::Display for $type {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(match self { $(Self::$variant => $name),* })
-            }
-        }
-    )*};
+named! {
+    Encoding "encoding" { Unorm = "unorm", Snorm = "snorm", Biased = "biased", Float = "float" }
+    Depth "bits" { Bits8 = "8", Bits16 = "16", Float16 = "16f", Float32 = "32f" }
+    Channels "channels" { Xyz = "xyz", Xy = "xy" }
+    Convention "convention" { Gl = "gl", Dx = "dx" }
+    Edge "edge" { Wrap = "wrap", Clamp = "clamp", Mirror = "mirror" }
 }
 
-display_as! {
-    Encoding { Unorm = "unorm", Snorm = "snorm", Biased = "biased", Float = "float" }
-    Depth { Bits8 = "8", Bits16 = "16", Float16 = "16f", Float32 = "32f" }
-    Channels { Xyz = "xyz", Xy = "xy" }
-    Convention { Gl = "gl", Dx = "dx" }
-    Edge { Wrap = "wrap", Clamp = "clamp", Mirror = "mirror" }
+impl fmt::Display for Edges {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.x == self.y { self.x.fmt(f) } else { write!(f, "{},{}", self.x, self.y) }
+    }
+}
+
+impl FromStr for Edges {
+    type Err = Error;
+
+    /// `wrap` for both axes, `wrap,clamp` for x and y.
+    fn from_str(text: &str) -> Result<Self> {
+        let edge = |name: &str| name.trim().parse::<Edge>().ok();
+        let edges = match text.split_once(',') {
+            None => edge(text).map(Self::both),
+            Some((x, y)) => edge(x).zip(edge(y)).map(|(x, y)| Self { x, y }),
+        };
+        let range = "wrap, clamp or mirror, or two of them for x and y: wrap,clamp";
+        edges.ok_or_else(|| Error::parameter("edge", text, range))
+    }
 }
 
 #[cfg(test)]

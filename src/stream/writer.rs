@@ -71,6 +71,16 @@ impl CodeWriter {
     }
 }
 
+impl Drop for CodeWriter {
+    /// A sink that was not finished removes its file: that is waited for, since the process may end right after.
+    fn drop(&mut self) {
+        self.filling = None;
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
 impl CodeSink for CodeWriter {
     fn write(&mut self, rows: usize, fill: &mut dyn FnMut(&mut CodesMut<'_>) -> Result<()>) -> Result<()> {
         let count = rows * self.row_codes;

@@ -2,7 +2,7 @@
 
 use crate::exact::Scale;
 use crate::map::{Edges, NormalFormat};
-use std::fmt;
+use crate::names::named;
 
 /// How a height map becomes a normal map.
 ///
@@ -45,22 +45,7 @@ pub enum Precision {
     Fast,
 }
 
-impl fmt::Display for Filter {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Central => "central",
-            Self::Sobel => "sobel",
-            Self::Scharr => "scharr",
-            Self::Prewitt => "prewitt",
-        })
-    }
-}
-
-impl fmt::Display for Precision {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Exact => "exact",
-            Self::Fast => "fast",
-        })
-    }
+named! {
+    Filter "filter" { Central = "central", Sobel = "sobel", Scharr = "scharr", Prewitt = "prewitt" }
+    Precision "precision" { Exact = "exact", Fast = "fast" }
 }

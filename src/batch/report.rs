@@ -1,0 +1,257 @@
+//! What was done, for other programs: JSON.
+
+use super::{Job, Outcome};
+use crate::error::{Error, Result};
+use crate::io::ReadOptions;
+use crate::ops::normal::NormalOptions;
+use serde::Serialize;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// A run and its files.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// Version of texbake.
+    pub version: &'static str,
+    /// The settings file that was used.
+    pub settings: Option<PathBuf>,
+    /// Sums over the files.
+    pub totals: Totals,
+    /// Folders that could not be searched, and why.
+    pub errors: Vec<String>,
+    /// The files, in the order in which they were found.
+    pub files: Vec<FileReport>,
+}
+
+/// Sums over the files of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Totals {
+    /// Height maps.
+    pub files: usize,
+    /// Those that were baked.
+    pub baked: usize,
+    /// Those that could not be baked.
+    pub failed: usize,
+    /// Those that were being baked when the run was interrupted; they left no output.
+    pub stopped: usize,
+    /// Those that had not been begun then.
+    pub not_begun: usize,
+    /// Texels of the baked files.
+    pub texels: u64,
+    /// From the first file's opening to the last one's closing.
+    pub seconds: f64,
+    /// Millions of texels in a second.
+    pub megatexels_per_second: f64,
+    /// Bytes of the baked files' inputs.
+    pub bytes_in: u64,
+    /// Bytes of the outputs.
+    pub bytes_out: u64,
+}
+
+/// What became of one file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FileResult {
+    /// The normal map is complete.
+    Baked,
+    /// There is an error, and no output.
+    Failed,
+    /// The run was interrupted meanwhile; there is no output.
+    Stopped,
+    /// The run was interrupted before.
+    NotBegun,
+}
+
+/// One file of a run.
+#[derive(Debug, Clone, Serialize)]
+pub struct FileReport {
+    /// The height map file.
+    pub input: PathBuf,
+    /// The normal map file.
+    pub output: PathBuf,
+    /// What became of it.
+    pub result: FileResult,
+    /// Why it failed.
+    pub error: Option<String>,
+    /// What looks wrong, although it was baked.
+    pub warnings: Vec<String>,
+    /// What was asked for, by the names of the command line.
+    pub options: Options,
+    /// What baked it: `cpu` or `gpu`.
+    pub backend: Option<String>,
+    /// The device and how it was used.
+    pub adapter: Option<String>,
+    /// Why this backend was chosen.
+    pub reason: String,
+    /// Why another backend failed before.
+    pub fallback: Option<String>,
+    /// Texels in a row.
+    pub width: Option<usize>,
+    /// Rows.
+    pub height: Option<usize>,
+    /// Type of the heights: `u8`, `u16`, `f32`.
+    pub depth: Option<String>,
+    /// The scale that was used, in texels.
+    pub scale: Option<UsedScale>,
+    /// From opening the input to closing the output.
+    pub milliseconds: f64,
+    /// Bytes of the input.
+    pub bytes_in: u64,
+    /// Bytes of the output.
+    pub bytes_out: u64,
+}
+
+/// The options of a file as text.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Options {
+    /// The scale as it was given: `7/3`, or `2 x 2 by 1/10 high`.
+    pub scale: String,
+    /// The slope stencil.
+    pub filter: String,
+    /// The edge mode, or those of x and y.
+    pub edge: String,
+    /// How a component becomes a code.
+    pub encoding: String,
+    /// How a code is stored.
+    pub bits: String,
+    /// Which components there are.
+    pub channels: String,
+    /// Which way green points.
+    pub convention: String,
+    /// Exact or fast.
+    pub precision: String,
+    /// The channel that was read.
+    pub channel: Option<String>,
+    /// What the height codes mean.
+    pub color_space: String,
+    /// The layout of a file without a header.
+    pub raw: Option<String>,
+    /// The limit on the decoded size.
+    pub max_bytes: u64,
+}
+
+/// The scale that a bake used, in texels.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct UsedScale {
+    /// Along the rows: an integer or a ratio.
+    pub x: String,
+    /// Down the rows.
+    pub y: String,
+    /// Whether it is the one that was asked for.
+    pub exact: bool,
+}
+
+impl Report {
+    /// What `jobs` came to in `time`; `errors` are those of the search.
+    pub fn new(jobs: &[Job], outcomes: &[Outcome], time: Duration, errors: &[Error], settings: Option<&Path>) -> Self {
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            settings: settings.map(Path::to_owned),
+            totals: Totals::new(outcomes, time),
+            errors: errors.iter().map(ToString::to_string).collect(),
+            files: jobs.iter().zip(outcomes).map(|(job, outcome)| FileReport::new(job, outcome)).collect(),
+        }
+    }
+
+    /// Writes it as JSON; the file appears under its name when it is complete.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let mut file = tempfile::NamedTempFile::new_in(folder).map_err(Error::io(path))?;
+        serde_json::to_writer_pretty(&mut file, self).map_err(|error| Error::io(path)(error.into()))?;
+        file.write_all(b"\n").map_err(Error::io(path))?;
+        file.as_file().sync_all().map_err(Error::io(path))?;
+        file.persist(path).map_err(|error| Error::io(path)(error.error))?;
+        Ok(())
+    }
+}
+
+impl Totals {
+    /// Sums over `outcomes`, which took `time` together.
+    pub fn new(outcomes: &[Outcome], time: Duration) -> Self {
+        let mut totals = Self { files: outcomes.len(), seconds: time.as_secs_f64(), ..Self::default() };
+        for outcome in outcomes {
+            match FileResult::of(outcome) {
+                FileResult::Baked => totals.baked += 1,
+                FileResult::Failed => totals.failed += 1,
+                FileResult::Stopped => totals.stopped += 1,
+                FileResult::NotBegun => totals.not_begun += 1,
+            }
+            if let Ok(ran) = &outcome.result {
+                totals.texels += ran.size.texels() as u64;
+                totals.bytes_in += outcome.bytes_in;
+                totals.bytes_out += outcome.bytes_out;
+            }
+        }
+        totals.megatexels_per_second = totals.texels as f64 / 1e6 / totals.seconds.max(1e-9);
+        totals
+    }
+}
+
+impl FileResult {
+    /// What `outcome` amounts to.
+    pub fn of(outcome: &Outcome) -> Self {
+        match &outcome.result {
+            Ok(_) => Self::Baked,
+            Err(Error::Cancelled) if outcome.time.is_zero() => Self::NotBegun,
+            Err(Error::Cancelled) => Self::Stopped,
+            Err(_) => Self::Failed,
+        }
+    }
+}
+
+impl FileReport {
+    fn new(job: &Job, outcome: &Outcome) -> Self {
+        let result = FileResult::of(outcome);
+        let ran = outcome.result.as_ref().ok();
+        let (backend, adapter) = ran.map_or((None, None), |ran| match ran.backend.split_once(", ") {
+            Some((backend, adapter)) => (Some(backend.to_owned()), Some(adapter.to_owned())),
+            None => (Some(ran.backend.clone()), None),
+        });
+        let ratio =
+            |part: i32, q: u32| crate::Rational::new(part.into(), q.into()).map_or(String::new(), |r| r.to_string());
+        let scale = ran.map(|ran| ran.scale);
+        Self {
+            input: job.input.clone(),
+            output: job.output.clone(),
+            result,
+            error: job.failure(outcome),
+            warnings: outcome.warnings.clone(),
+            options: Options::new(&job.options, &job.read),
+            backend,
+            adapter,
+            reason: job.baker.reason().to_owned(),
+            fallback: ran.and_then(|ran| ran.fallback.clone()),
+            width: ran.map(|ran| ran.size.width()),
+            height: ran.map(|ran| ran.size.height()),
+            depth: ran.map(|ran| ran.depth.to_string()),
+            scale: scale.map(|s| UsedScale { x: ratio(s.x, s.q), y: ratio(s.y, s.q), exact: s.exact }),
+            milliseconds: (outcome.time.as_secs_f64() * 1e6).round() / 1e3,
+            bytes_in: outcome.bytes_in,
+            bytes_out: outcome.bytes_out,
+        }
+    }
+}
+
+impl Options {
+    fn new(options: &NormalOptions, read: &ReadOptions) -> Self {
+        let format = options.format;
+        Self {
+            scale: options.scale.to_string(),
+            filter: options.filter.to_string(),
+            edge: options.edges.to_string(),
+            encoding: format.encoding.to_string(),
+            bits: format.depth.to_string(),
+            channels: format.channels.to_string(),
+            convention: format.convention.to_string(),
+            precision: options.precision.to_string(),
+            channel: read.channel.as_ref().map(ToString::to_string),
+            color_space: read.color_space.to_string(),
+            raw: read.raw.map(|layout| layout.to_string()),
+            max_bytes: read.max_bytes,
+        }
+    }
+}

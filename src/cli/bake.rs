@@ -1,0 +1,106 @@
+//! `texbake bake`: folders.
+
+use super::args::{BakeArguments, PerFile};
+use super::config::Config;
+use super::exit::{Exit, Failure};
+use super::interruptible;
+use super::print::{file_table, put, say, summary};
+use super::progress::{Progress, Verbosity};
+use super::settings::open_baker;
+use std::collections::HashMap;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::thread::available_parallelism;
+use std::time::Instant;
+use texbake::batch::{Found, Job, Report, Search, check_targets, run};
+
+pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
+    let reporting = &arguments.reporting;
+    let config = Config::find(arguments.config.as_deref(), &arguments.paths).map_err(Failure::settings)?;
+    let search = search(arguments, config.as_ref())?;
+    let (found, errors) = search.find(&arguments.paths);
+    errors.iter().for_each(|error| say(format_args!("error: {error}")));
+    if found.is_empty() && errors.is_empty() {
+        return Err(nothing_found(&arguments.paths, &search));
+    }
+    if let Some(config) = config.as_ref().filter(|_| !reporting.quiet) {
+        describe(config, &found);
+    }
+    let jobs = jobs(arguments, config.as_ref(), &found)?;
+    check_targets(&jobs, reporting.report.as_deref())?;
+
+    let monitor = interruptible();
+    let at_once = arguments.jobs.or(available_parallelism().ok()).map_or(1, NonZeroUsize::get);
+    let progress = Progress::new(&jobs, &monitor, if reporting.quiet { Verbosity::Quiet } else { Verbosity::Files });
+    let start = Instant::now();
+    let outcomes = progress.during(|| run(&jobs, at_once, &monitor, &|event| progress.watch(event)));
+    let time = start.elapsed();
+
+    let report = Report::new(&jobs, &outcomes, time, &errors, config.as_ref().map(|config| config.path.as_path()));
+    if !reporting.quiet {
+        file_table(&jobs, &outcomes).into_iter().for_each(put);
+        put(summary(&report.totals, &jobs, &outcomes));
+    }
+    if let Some(path) = &reporting.report {
+        report.write(path)?;
+    }
+    Ok(match report.totals {
+        totals if totals.stopped + totals.not_begun > 0 => Exit::Interrupted,
+        totals if totals.failed > 0 || !errors.is_empty() => Exit::Failed,
+        _ => Exit::Success,
+    })
+}
+
+/// The suffixes of the command line, else of the settings, else the usual ones.
+fn search(arguments: &BakeArguments, config: Option<&Config>) -> Result<Search, Failure> {
+    let given = Some(arguments.suffix.clone()).filter(|suffixes| !suffixes.is_empty());
+    let suffixes = given.or_else(|| config.and_then(|config| config.suffixes.clone()));
+    Ok(suffixes.map_or_else(|| Ok(Search::default()), Search::new)?)
+}
+
+/// One job for each file, with its own settings; files that run at the same place share a baker.
+fn jobs(arguments: &BakeArguments, config: Option<&Config>, found: &[Found]) -> Result<Vec<Job>, Failure> {
+    let mut bakers = HashMap::new();
+    let mut jobs = Vec::new();
+    for map in found {
+        let below = config.map_or_else(PerFile::default, |config| config.settings(&relative(map)));
+        let PerFile { name, format, settings } = arguments.each.clone().or(&below);
+        let output = name.unwrap_or_default().output(map, &arguments.out, format.as_deref().unwrap_or("png"))?;
+        let device = settings.device()?;
+        let baker = match bakers.get(&device) {
+            Some(baker) => Arc::clone(baker),
+            None => {
+                let baker = Arc::new(open_baker(&device)?);
+                bakers.insert(device, baker.clone());
+                baker
+            }
+        };
+        let options = settings.normal(&output)?;
+        jobs.push(Job { input: map.path.clone(), output, read: settings.read(), options, baker });
+    }
+    Ok(jobs)
+}
+
+/// The path below the folder that was searched, which globs match.
+fn relative(map: &Found) -> PathBuf {
+    map.folder.join(map.path.file_name().unwrap_or_default())
+}
+
+/// Says which settings file is used, and which of its overrides are not.
+fn describe(config: &Config, found: &[Found]) {
+    say(format_args!("settings from {}", config.path.display()));
+    let paths: Vec<PathBuf> = found.iter().map(relative).collect();
+    for glob in config.unused(&paths) {
+        say(format_args!("warning: {}: no height map matches the override {glob:?}", config.path.display()));
+    }
+}
+
+fn nothing_found(paths: &[PathBuf], search: &Search) -> Failure {
+    let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+    let (paths, suffixes) = (paths.join(", "), search.suffixes().join(", "));
+    Failure::Failed(format!(
+        "{paths}: no height map found; their names end in {suffixes} (or that and _2k or the like), and in .png, .tif, \
+         .exr or another image format; change that with --suffix, or name the files"
+    ))
+}

@@ -1,0 +1,245 @@
+//! `texbake.toml`: defaults, then overrides by glob.
+//!
+//! Each key is handed to the parser of the command line, so both know the same options and the same values.
+
+use super::args::PerFile;
+use clap::{Args, Command, FromArgMatches};
+use globset::{GlobBuilder, GlobMatcher};
+use std::path::{Path, PathBuf};
+use texbake::{Error, Result};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A settings file.
+#[derive(Debug)]
+pub struct Config {
+    pub path: PathBuf,
+    pub suffixes: Option<Vec<String>>,
+    defaults: PerFile,
+    overrides: Vec<Override>,
+}
+
+#[derive(Debug)]
+struct Override {
+    glob: GlobMatcher,
+    settings: PerFile,
+}
+
+const NAME: &str = "texbake.toml";
+
+impl Config {
+    /// Reads `given`, or the settings file in the first folder of `paths`, or the one in the current folder, or none.
+    ///
+    /// # Errors
+    /// [`Error::Io`], or [`Error::File`] with file and line.
+    pub fn find(given: Option<&Path>, paths: &[PathBuf]) -> Result<Option<Self>> {
+        let first_folder = paths.iter().find(|path| path.is_dir());
+        let usual = first_folder.map(|folder| folder.join(NAME)).into_iter().chain([PathBuf::from(NAME)]);
+        let path = given.map(Path::to_owned).or_else(|| usual.into_iter().find(|path| path.is_file()));
+        let Some(path) = path else { return Ok(None) };
+        let text = std::fs::read_to_string(&path).map_err(|source| Error::Io { path: path.clone(), source })?;
+        Self::parse(&path, &text).map(Some)
+    }
+
+    /// The settings of the file at `path` below the folder that was searched: the last override that matches it,
+    /// then the defaults.
+    pub fn settings(&self, path: &Path) -> PerFile {
+        let matching = self.overrides.iter().rev().find(|candidate| candidate.matches(path));
+        matching.map_or_else(|| self.defaults.clone(), |matching| matching.settings.clone().or(&self.defaults))
+    }
+
+    /// The globs that match none of `paths`.
+    pub fn unused<'a>(&'a self, paths: &'a [PathBuf]) -> impl Iterator<Item = &'a str> {
+        let unused = |candidate: &&Override| !paths.iter().any(|path| candidate.matches(path));
+        self.overrides.iter().filter(unused).map(|candidate| candidate.glob.glob().glob())
+    }
+
+    fn parse(path: &Path, text: &str) -> Result<Self> {
+        let source = Source { path, text };
+        let document = DeTable::parse(text).map_err(|error| {
+            let start = error.span().map_or(0, |span| span.start);
+            source.error(start, error.message(), "correct it")
+        })?;
+        let mut config =
+            Self { path: path.into(), suffixes: None, defaults: PerFile::default(), overrides: Vec::new() };
+        for (key, value) in document.get_ref() {
+            match (key.get_ref().as_ref(), value.get_ref()) {
+                ("suffix", DeValue::Array(values)) => {
+                    let suffixes = values.iter().map(|value| source.string("suffix", value).map(str::to_owned));
+                    config.suffixes = Some(suffixes.collect::<Result<_>>()?);
+                }
+                ("suffix", _) => config.suffixes = Some(vec![source.string("suffix", value)?.to_owned()]),
+                ("defaults", DeValue::Table(table)) => config.defaults = source.settings(table, value.span().start)?,
+                ("override", DeValue::Array(tables)) => {
+                    config.overrides =
+                        tables.iter().map(|table| source.parse_override(table)).collect::<Result<_>>()?;
+                }
+                ("defaults", _) => {
+                    return Err(source.error(key.span().start, "defaults is no table", "write [defaults]"));
+                }
+                ("override", _) => {
+                    return Err(source.error(key.span().start, "override is no list of tables", "write [[override]]"));
+                }
+                (other, _) => {
+                    let reason = format!("{other} has no meaning here");
+                    let remedy =
+                        "a settings file holds suffix, [defaults] and [[override]]; options go into the tables";
+                    return Err(source.error(key.span().start, reason, remedy));
+                }
+            }
+        }
+        Ok(config)
+    }
+}
+
+impl Override {
+    /// A glob without a folder matches names in every folder.
+    fn matches(&self, path: &Path) -> bool {
+        let whole = self.glob.glob().glob().contains('/');
+        self.glob.is_match(if whole { path } else { path.file_name().map_or(path, Path::new) })
+    }
+}
+
+/// A settings file as text, to say where something is wrong.
+struct Source<'a> {
+    path: &'a Path,
+    text: &'a str,
+}
+
+impl Source<'_> {
+    fn parse_override(&self, value: &Spanned<DeValue<'_>>) -> Result<Override> {
+        let start = value.span().start;
+        let DeValue::Table(table) = value.get_ref() else {
+            return Err(self.error(start, "override is no list of tables", "write [[override]]"));
+        };
+        let Some(glob) = table.get("glob") else {
+            let remedy = "write which files it is for, as glob = \"**/dem_*\"";
+            return Err(self.error(start, "this override has no glob", remedy));
+        };
+        let matcher = GlobBuilder::new(self.string("glob", glob)?).literal_separator(true).build();
+        let matcher = matcher.map_err(|error| self.error(glob.span().start, error, "correct the glob"))?;
+        Ok(Override { glob: matcher.compile_matcher(), settings: self.settings(table, start)? })
+    }
+
+    /// The options of a table; `start` is where it begins.
+    fn settings(&self, table: &DeTable<'_>, start: usize) -> Result<PerFile> {
+        let mut arguments = Vec::new();
+        for (key, value) in table.iter().filter(|(key, _)| key.get_ref() != "glob") {
+            let argument = self.argument(key, value)?;
+            self.parsed(std::slice::from_ref(&argument), key.span().start)?;
+            arguments.push(argument);
+        }
+        self.parsed(&arguments, start)
+    }
+
+    /// `--scale=7/3` for `scale = "7/3"`.
+    fn argument(&self, key: &Spanned<std::borrow::Cow<'_, str>>, value: &Spanned<DeValue<'_>>) -> Result<String> {
+        let command = parser();
+        let mut options = command.get_arguments().filter_map(|option| option.get_long());
+        let name = key.get_ref();
+        if !options.any(|option| option == name) {
+            let known: Vec<_> = command.get_arguments().filter_map(|option| option.get_long()).collect();
+            let remedy = format!("the settings are {}", known.join(", "));
+            return Err(self.error(key.span().start, format!("{name} is no setting"), remedy));
+        }
+        let text = match value.get_ref() {
+            DeValue::String(text) => text.to_string(),
+            DeValue::Integer(number) => number.to_string(),
+            DeValue::Float(number) => number.as_str().to_owned(),
+            _ => {
+                let remedy = format!("write it as on the command line, {name} = \"...\"");
+                return Err(self.error(value.span().start, format!("{name} is neither text nor a number"), remedy));
+            }
+        };
+        Ok(format!("--{name}={text}"))
+    }
+
+    fn parsed(&self, arguments: &[String], start: usize) -> Result<PerFile> {
+        let matches = parser().try_get_matches_from(arguments);
+        let settings = matches.and_then(|matches| PerFile::from_arg_matches(&matches));
+        settings.map_err(|error| {
+            // The parser's first paragraph is the reason; the rest is about a command line.
+            let text = error.to_string();
+            let reason = text.split("\n\n").next().unwrap_or_default().trim_start_matches("error: ");
+            self.error(start, reason.split_whitespace().collect::<Vec<_>>().join(" "), "see texbake bake --help")
+        })
+    }
+
+    fn string<'v>(&self, key: &str, value: &'v Spanned<DeValue<'_>>) -> Result<&'v str> {
+        match value.get_ref() {
+            DeValue::String(text) => Ok(text),
+            _ => Err(self.error(value.span().start, format!("{key} is no text"), "put it into quotes")),
+        }
+    }
+
+    fn error(&self, at: usize, reason: impl ToString, remedy: impl Into<String>) -> Error {
+        let line = 1 + self.text.as_bytes().iter().take(at).filter(|byte| **byte == b'\n').count();
+        let path = format!("{}:{line}", self.path.display()).into();
+        Error::File { path, reason: reason.to_string(), remedy: remedy.into() }
+    }
+}
+
+/// The options of one file, without anything else.
+fn parser() -> Command {
+    let command = Command::new(NAME).no_binary_name(true).disable_help_flag(true).disable_version_flag(true);
+    PerFile::augment_args(command)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<Config> {
+        Config::parse(Path::new("texbake.toml"), text)
+    }
+
+    #[test]
+    fn the_last_matching_override_goes_before_the_defaults() {
+        let config = parse(
+            "suffix = ['_dem']\n[defaults]\nscale = 24\nfilter = 'sobel'\n\
+             [[override]]\nglob = '**/dem_*'\nscale = 0.35\nbits = 16\n\
+             [[override]]\nglob = '*_x.png'\nscale = '7/3'\n",
+        );
+        let config = config.unwrap();
+        let settings = |path: &str| {
+            let settings = config.settings(Path::new(path)).settings;
+            let text = |value: Option<String>| value.unwrap_or_default();
+            let (scale, filter) = (settings.scale.map(|it| it.to_string()), settings.filter.map(|it| it.to_string()));
+            (text(scale), text(filter), text(settings.bits.map(|it| it.to_string())))
+        };
+        let expected = |scale: &str, bits: &str| (scale.to_owned(), "sobel".to_owned(), bits.to_owned());
+        assert_eq!(settings("wall.png"), expected("24", ""));
+        assert_eq!(settings("dem_1.png"), expected("7/20", "16"));
+        assert_eq!(settings("a/b/dem_1.png"), expected("7/20", "16"));
+        assert_eq!(settings("a/dem_x.png"), expected("7/3", ""));
+        assert_eq!(config.suffixes, Some(vec!["_dem".to_owned()]));
+        let paths = ["a/dem_x.png".into()];
+        assert_eq!(config.unused(&paths).count(), 0);
+        let paths = ["a/dem_y.png".into()];
+        assert_eq!(config.unused(&paths).collect::<Vec<_>>(), ["*_x.png"]);
+    }
+
+    #[test]
+    fn mistakes_are_named_with_their_line() {
+        for (text, parts) in [
+            ("[defaults]\nscal = 24\n", ["texbake.toml:2:", "scal is no setting", "scale, size, depth"]),
+            ("[defaults]\n\nscale = 'x'\n", ["texbake.toml:3:", "'x' for '--scale", "it must be an integer"]),
+            ("[defaults]\nfilter = 'sobl'\n", ["texbake.toml:2:", "'sobl' for '--filter", "sobel, scharr"]),
+            (
+                "[defaults]\nscale = true\n",
+                ["texbake.toml:2:", "scale is neither text nor a number", "as on the command line"],
+            ),
+            ("scale = 24\n", ["texbake.toml:1:", "scale has no meaning here", "[defaults] and [[override]]"]),
+            ("\n[[override]]\nscale = 24\n", ["texbake.toml:2:", "no glob", "glob = \"**/dem_*\""]),
+            ("[[override]]\nglob = '[a'\n", ["texbake.toml:2:", "[a", "correct the glob"]),
+            ("[defaults]\nscale = \n", ["texbake.toml:2:", "", "correct it"]),
+            ("[defaults]\nscale = 1\nsize = '1x1'\n", ["texbake.toml:1:", "cannot be used with", "--size"]),
+            ("[override]\nscale = 1\n", ["texbake.toml:1:", "no list", "write [[override]]"]),
+        ] {
+            let error = parse(text).unwrap_err().to_string();
+            for part in parts {
+                assert!(error.contains(part), "{text:?} gives {error:?}, without {part:?}");
+            }
+        }
+    }
+}

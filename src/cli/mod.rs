@@ -1,0 +1,51 @@
+//! The command line: arguments, then actions. Nothing else prints.
+
+mod args;
+mod bake;
+mod config;
+mod devices;
+mod exit;
+mod normal;
+mod print;
+mod progress;
+mod settings;
+mod values;
+
+use args::{Arguments, Command};
+use clap::Parser;
+use exit::Exit;
+use std::process::ExitCode;
+use std::sync::Arc;
+use texbake::stream::Monitor;
+
+/// Does what the arguments say.
+pub fn run() -> ExitCode {
+    let arguments = Arguments::parse();
+    let done = match &arguments.command {
+        Command::Normal(arguments) => normal::normal(arguments),
+        Command::Bake(arguments) => bake::bake(arguments),
+        Command::Devices(arguments) => devices::devices(arguments),
+    };
+    let exit = done.unwrap_or_else(|failure| {
+        print::say(format_args!("error: {failure}"));
+        failure.exit()
+    });
+    exit.into()
+}
+
+/// A monitor that an interrupt cancels: files that are being baked end cleanly. A second interrupt ends the program.
+fn interruptible() -> Arc<Monitor> {
+    let monitor = Arc::new(Monitor::default());
+    let watched = monitor.clone();
+    let stop = move || {
+        if watched.is_cancelled() {
+            std::process::exit(Exit::Interrupted.code().into());
+        }
+        watched.cancel();
+        print::say("interrupted: files that are being baked are stopped; interrupt again to end at once");
+    };
+    if let Err(error) = ctrlc::set_handler(stop) {
+        print::say(format_args!("warning: an interrupt will not end cleanly: {error}"));
+    }
+    monitor
+}

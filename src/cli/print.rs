@@ -1,0 +1,159 @@
+//! Lines and tables.
+
+use comfy_table::{CellAlignment, Table, presets};
+use std::io::Write;
+use std::time::Duration;
+use texbake::Device;
+use texbake::batch::{FileResult, Job, Outcome, Totals};
+
+/// Longer folders get a table of what was not baked only.
+const TABLE_ROWS: usize = 40;
+
+/// A line on stderr. Nobody may be listening, which is no reason to stop.
+pub fn say(line: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
+}
+
+/// Text on stdout.
+pub fn put(text: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stdout().lock(), "{text}");
+}
+
+/// What became of one file of a folder.
+pub fn file_line(place: &str, job: &Job, outcome: &Outcome) -> String {
+    match (&outcome.result, job.failure(outcome)) {
+        (Ok(ran), _) => format!(
+            "[{place}] baked {} -> {}, {}, {}, {}",
+            job.input.display(),
+            job.output.display(),
+            ran.size,
+            ran.depth,
+            milliseconds(outcome.time)
+        ),
+        (Err(_), Some(reason)) => format!("[{place}] failed {reason}"),
+        (Err(error), None) => format!("[{place}] stopped {}: {error}", job.input.display()),
+    }
+}
+
+/// What was baked, where and why there, and how fast.
+pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
+    let ran = outcome.result.as_ref().ok()?;
+    let (options, format) = (&job.options, job.options.format);
+    let rate = ran.size.texels() as f64 / 1e6 / outcome.time.as_secs_f64().max(1e-9);
+    Some(format!(
+        "{}: {}, {} to {} {} {} {}, scale {}, {}; {} ({}); {}, {rate:.1} Mtexel/s, {} in, {} out",
+        job.output.display(),
+        ran.size,
+        ran.depth,
+        format.encoding,
+        format.depth,
+        format.channels,
+        format.convention,
+        ran.scale,
+        options.precision,
+        ran.backend,
+        job.baker.reason(),
+        milliseconds(outcome.time),
+        bytes(outcome.bytes_in),
+        bytes(outcome.bytes_out),
+    ))
+}
+
+/// The files of a folder; of many only those that were not baked.
+pub fn file_table(jobs: &[Job], outcomes: &[Outcome]) -> Option<String> {
+    let mut table = plain_table(&["file", "size", "depth", "ms", "result"], &[3]);
+    let all = jobs.len() <= TABLE_ROWS;
+    for (job, outcome) in jobs.iter().zip(outcomes).filter(|(_, outcome)| all || outcome.result.is_err()) {
+        let (size, depth) = match &outcome.result {
+            Ok(ran) => (ran.size.to_string(), ran.depth.to_string()),
+            Err(_) => Default::default(),
+        };
+        let time =
+            if outcome.time.is_zero() { String::new() } else { format!("{:.1}", outcome.time.as_secs_f64() * 1e3) };
+        let result = match FileResult::of(outcome) {
+            FileResult::Baked => "baked".to_owned(),
+            FileResult::Failed => "failed".to_owned(),
+            FileResult::Stopped => "stopped".to_owned(),
+            FileResult::NotBegun => "not begun".to_owned(),
+        };
+        table.add_row([job.input.display().to_string(), size, depth, time, result]);
+    }
+    (!table.is_empty()).then(|| table.trim_fmt())
+}
+
+/// One line about a run.
+pub fn summary(totals: &Totals, jobs: &[Job], outcomes: &[Outcome]) -> String {
+    let mut counts = vec![format!("{} of {} files baked", totals.baked, totals.files)];
+    for (count, what) in [(totals.failed, "failed"), (totals.stopped, "stopped"), (totals.not_begun, "not begun")] {
+        if count > 0 {
+            counts.push(format!("{count} {what}"));
+        }
+    }
+    let mut places: Vec<String> = Vec::new();
+    for (job, ran) in jobs.iter().zip(outcomes).filter_map(|(job, outcome)| Some((job, outcome.result.as_ref().ok()?)))
+    {
+        let reason = ran.fallback.as_deref().unwrap_or(job.baker.reason());
+        let place = format!("{} ({reason})", ran.backend);
+        if !places.contains(&place) {
+            places.push(place);
+        }
+    }
+    let mut line = format!(
+        "{}; {:.2} Mtexel in {:.2} s, {:.1} Mtexel/s, {} in, {} out",
+        counts.join(", "),
+        totals.texels as f64 / 1e6,
+        totals.seconds,
+        totals.megatexels_per_second,
+        bytes(totals.bytes_in),
+        bytes(totals.bytes_out),
+    );
+    for place in places {
+        line += "; ";
+        line += &place;
+    }
+    line
+}
+
+/// What could run bakes.
+pub fn device_table(devices: &[Device]) -> String {
+    let mut table = plain_table(&["device", "api", "kind", "driver", "self-test", "auto"], &[]);
+    for device in devices {
+        let self_test =
+            device.self_test.as_ref().map_or_else(|reason| format!("failed: {reason}"), |()| "passed".into());
+        let picked = format!("{}{}", if device.picked { "picked: " } else { "no: " }, device.reason);
+        table.add_row([&device.name, &device.api, &device.kind, &device.driver, &self_test, &picked]);
+    }
+    table.trim_fmt()
+}
+
+fn plain_table(header: &[&str], numbers: &[usize]) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING).set_header(header.iter().copied());
+    for &column in numbers {
+        if let Some(column) = table.column_mut(column) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
+}
+
+fn milliseconds(time: Duration) -> String {
+    format!("{:.1} ms", time.as_secs_f64() * 1e3)
+}
+
+/// `12.3 MB`.
+fn bytes(count: u64) -> String {
+    match count {
+        0..1_000 => format!("{count} B"),
+        1_000..1_000_000 => format!("{:.1} kB", count as f64 / 1e3),
+        _ => format!("{:.1} MB", count as f64 / 1e6),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn byte_counts_are_decimal() {
+        assert_eq!(["999 B", "1.0 kB", "12.3 MB"].map(str::to_owned), [999, 1000, 12_345_678].map(super::bytes));
+    }
+}

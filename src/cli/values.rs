@@ -1,0 +1,88 @@
+//! Values of options that are no type of the library, and how values are read.
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use std::str::FromStr;
+use texbake::{Error, Rational};
+
+/// Reads a value; what it must be becomes the message.
+pub fn value<T: FromStr<Err = Error>>(text: &str) -> Result<T, String> {
+    text.parse().map_err(|error| match error {
+        Error::Parameter { range, .. } => format!("it must be {range}"),
+        other => other.to_string(),
+    })
+}
+
+/// Reads one of `names`, which help and errors list.
+pub fn choice<T>(names: &'static [&'static str]) -> impl TypedValueParser<Value = T>
+where
+    T: FromStr<Err = Error> + Clone + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(names.iter().copied()).try_map(|name| name.parse::<T>())
+}
+
+/// Width and height in a unit of length, `2.0x1.5`; both are above zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Extent(pub [Rational; 2]);
+
+impl FromStr for Extent {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let length = |text: &str| text.parse::<Rational>().ok().filter(|length| length.numerator() > 0);
+        let sides = text.split_once('x').and_then(|(width, height)| Some([length(width)?, length(height)?]));
+        sides.map(Self).ok_or_else(|| wrong("size", text, "a width and a height above zero, as 2.0x1.5"))
+    }
+}
+
+/// A number of bytes: `512M`, `4G`, in powers of 1024.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ByteSize(pub u64);
+
+impl FromStr for ByteSize {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let upper = text.to_ascii_uppercase();
+        let plain = upper.trim_end_matches("IB").trim_end_matches('B');
+        let (digits, shift) = match plain.find(['K', 'M', 'G', 'T']).map(|at| plain.split_at(at)) {
+            None => (plain, 0),
+            Some((digits, "K")) => (digits, 10),
+            Some((digits, "M")) => (digits, 20),
+            Some((digits, "G")) => (digits, 30),
+            Some((digits, "T")) => (digits, 40),
+            Some(_) => ("", 0),
+        };
+        let bytes = digits.parse::<u64>().ok().and_then(|count| count.checked_mul(1 << shift));
+        let bytes = bytes.filter(|bytes| *bytes > 0).map(Self);
+        bytes.ok_or_else(|| wrong("max-bytes", text, "a whole number of bytes above zero, as 512M or 4G"))
+    }
+}
+
+fn wrong(parameter: &'static str, value: &str, range: &str) -> Error {
+    Error::Parameter { parameter, value: value.into(), range: range.into() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn byte_sizes_are_powers_of_1024() {
+        for (text, bytes) in
+            [("1", 1), ("2k", 2048), ("512M", 512 << 20), ("4G", 4 << 30), ("4GiB", 4 << 30), ("1TB", 1 << 40)]
+        {
+            assert_eq!(text.parse::<ByteSize>().unwrap(), ByteSize(bytes), "{text}");
+        }
+        for text in ["", "0", "G", "4X", "-1", "1.5G", "4GG", "99999999T"] {
+            assert!(text.parse::<ByteSize>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn extents_are_two_lengths() {
+        assert_eq!("2.0x1/2".parse::<Extent>().unwrap(), Extent([2.into(), "0.5".parse().unwrap()]));
+        for text in ["", "2", "2x", "0x1", "1x-1", "1x1x1"] {
+            assert!(text.parse::<Extent>().is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! What the program says about itself, and about wrong arguments.
+
+use super::support::{Folder, bumps8};
+
+#[test]
+fn help_names_every_command_and_option() {
+    let folder = Folder::new();
+    let top = folder.run(&["--help"]).ends(0).stdout;
+    for word in ["normal", "bake", "devices", "Exit status", "texbake bake textures --out baked"] {
+        assert!(top.contains(word), "{word}");
+    }
+    let shared = [
+        "--scale",
+        "--size",
+        "--depth",
+        "--filter",
+        "--edge",
+        "--precision",
+        "--encoding",
+        "--bits",
+        "--channels",
+        "--convention",
+        "--channel",
+        "--color-space",
+        "--raw",
+        "--max-bytes",
+        "--backend",
+        "--adapter",
+        "--report",
+        "--quiet",
+    ];
+    let normal = folder.run(&["normal", "--help"]).ends(0).stdout;
+    let bake = folder.run(&["bake", "--help"]).ends(0).stdout;
+    for option in shared {
+        assert!(normal.contains(&format!("{option} ")) || normal.contains(&format!("{option}\n")), "{option}");
+        assert!(bake.contains(&format!("{option} ")) || bake.contains(&format!("{option}\n")), "{option}");
+    }
+    for option in
+        ["--out ", "--suffix ", "--name ", "--format ", "--config ", "--jobs ", "[[override]]", "texbake.toml"]
+    {
+        assert!(bake.contains(option), "{option}");
+    }
+    assert!(folder.run(&["devices", "--help"]).ends(0).stdout.contains("--json"));
+    let version = folder.run(&["--version"]).ends(0).stdout;
+    assert_eq!(version.trim_end(), format!("texbake {}", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn without_arguments_it_shows_its_help() {
+    let run = Folder::new().run(&[]).ends(2);
+    assert!(run.stderr.contains("Usage: texbake <COMMAND>"), "{}", run.stderr);
+}
+
+#[test]
+fn wrong_arguments_end_with_2_and_say_what_is_right() {
+    let folder = Folder::new();
+    folder.grey8("h.png", 3, 3, bumps8);
+    let cases: [(&[&str], &[&str]); 18] = [
+        (&["frobnicate"], &["unrecognized subcommand 'frobnicate'"]),
+        (&["normal", "h.png"], &["--output <FILE>"]),
+        (&["bake", "."], &["--out <FOLDER>"]),
+        (&["bake", "--out", "o"], &["<PATH>..."]),
+        (&["normal", "h.png", "-o", "n.png", "--scales", "1"], &["--scales", "'--scale'"]),
+        (
+            &["normal", "h.png", "-o", "n.png", "--scale", "x"],
+            &["'x' for '--scale", "it must be an integer, a decimal"],
+        ),
+        (&["normal", "h.png", "-o", "n.png", "--scale", "99999999"], &["--scale is 99999999", "16777215"]),
+        (&["normal", "h.png", "-o", "n.png", "--scale", "1", "--size", "1x1"], &["cannot be used with", "--size"]),
+        (&["normal", "h.png", "-o", "n.png", "--size", "1x1"], &["--depth is missing", "with --size"]),
+        (&["normal", "h.png", "-o", "n.png", "--depth", "1"], &["--size is missing", "with --depth"]),
+        (&["normal", "h.png", "-o", "n.png", "--size", "1x0"], &["'1x0' for '--size", "above zero"]),
+        (&["normal", "h.png", "-o", "n.png", "--edge", "repeat"], &["'repeat' for '--edge", "wrap, clamp or mirror"]),
+        (&["normal", "h.png", "-o", "n.png", "--filter", "sobl"], &["'sobl'", "central, sobel, scharr, prewitt"]),
+        (&["normal", "h.png", "-o", "n.png", "--encoding", "unorm", "--bits", "32f"], &["--bits is 32f", "8 or 16"]),
+        (&["normal", "h.png", "-o", "n.png", "--raw", "3x3"], &["'3x3' for '--raw"]),
+        (&["normal", "h.png", "-o", "n.png", "--max-bytes", "lots"], &["'lots' for '--max-bytes", "512M or 4G"]),
+        (
+            &["normal", "h.png", "-o", "n.png", "--backend", "cpu", "--adapter", "x"],
+            &["--adapter is x", "--backend gpu"],
+        ),
+        (&["bake", ".", "--out", "o", "--name", "{name}"], &["'{name}' for '--name", "{stem} and {size}"]),
+    ];
+    for (arguments, parts) in cases {
+        let run = folder.run(arguments).ends(2);
+        for part in parts {
+            assert!(run.stderr.contains(part), "{arguments:?}: {part:?} is not in {}", run.stderr);
+        }
+    }
+    assert_eq!(folder.files("."), ["h.png"]);
+}

@@ -1,0 +1,10 @@
+//! The program itself, run in folders of its own.
+
+mod errors;
+mod folder;
+mod help;
+mod interrupt;
+mod normal;
+mod report;
+mod settings;
+mod support;

@@ -1,0 +1,88 @@
+//! The JSON report, field by field.
+
+use super::support::{Folder, bumps8, bumps16};
+use serde_json::{Value, json};
+
+/// What a run measures itself stands apart from what it must say.
+fn take(object: &mut Value, key: &str) -> Value {
+    object.as_object_mut().unwrap().remove(key).unwrap_or_else(|| panic!("there is no {key}"))
+}
+
+#[test]
+fn a_folder_is_reported_file_by_file() {
+    let folder = Folder::new();
+    folder.grey16("tex/a_height.png", 20, 10, bumps16);
+    folder.grey8("tex/b_height_2k.png", 4, 4, bumps8);
+    folder.file("tex/c_height.png", "");
+    folder.file(
+        "tex/texbake.toml",
+        "[[override]]\nglob = 'b_*'\nsize = '2x1'\ndepth = 0.1\nbits = 16\nchannels = 'xy'\n",
+    );
+    let arguments = ["bake", "tex", "--out", "out", "--backend", "reference", "--edge", "wrap,clamp", "-q"];
+    let run = folder.run(&[&arguments[..], &["--report", "report.json"]].concat()).ends(1);
+    assert_eq!(run.stdout, "");
+
+    let mut report = folder.json("report.json");
+    let mut files = take(&mut report, "files");
+    let mut totals = take(&mut report, "totals");
+    assert_eq!(report, json!({ "version": env!("CARGO_PKG_VERSION"), "settings": "tex/texbake.toml", "errors": [] }));
+
+    let bytes = |name: &str| std::fs::metadata(folder.path(name)).unwrap().len();
+    let (seconds, rate) = (take(&mut totals, "seconds"), take(&mut totals, "megatexels_per_second"));
+    let (seconds, rate) = (seconds.as_f64().unwrap(), rate.as_f64().unwrap());
+    assert!(seconds > 0.0 && (rate * seconds * 1e6 / 216.0 - 1.0).abs() < 1e-9, "{seconds} {rate}");
+    assert_eq!(
+        totals,
+        json!({
+            "files": 3, "baked": 2, "failed": 1, "stopped": 0, "not_begun": 0, "texels": 216,
+            "bytes_in": bytes("tex/a_height.png") + bytes("tex/b_height_2k.png"),
+            "bytes_out": bytes("out/a_normal.png") + bytes("out/b_normal_2k.png"),
+        })
+    );
+
+    let files = files.as_array_mut().unwrap();
+    for file in files.iter_mut() {
+        assert!(take(file, "milliseconds").as_f64().unwrap() > 0.0);
+    }
+    let mut options = json!({
+        "scale": "1", "filter": "central", "edge": "wrap,clamp", "encoding": "unorm", "bits": "8", "channels": "xyz",
+        "convention": "gl", "precision": "exact", "channel": null, "color_space": "linear", "raw": null,
+        "max_bytes": 4_294_967_296u64,
+    });
+    assert_eq!(
+        files[0],
+        json!({
+            "input": "tex/a_height.png", "output": "out/a_normal.png", "result": "baked", "error": null,
+            "warnings": [], "options": options, "backend": "cpu reference", "adapter": null, "reason": "asked for",
+            "fallback": null, "width": 20, "height": 10, "depth": "u16",
+            "scale": { "x": "1", "y": "1", "exact": true },
+            "bytes_in": bytes("tex/a_height.png"), "bytes_out": bytes("out/a_normal.png"),
+        })
+    );
+    assert_eq!(files[2]["error"], "tex/c_height.png: the file is empty; copy or export it again");
+    assert_eq!(files[2]["result"], "failed");
+    assert_eq!([&files[2]["backend"], &files[2]["width"], &files[2]["scale"]], [&Value::Null; 3]);
+    assert_eq!([&files[2]["bytes_in"], &files[2]["bytes_out"]], [&json!(0); 2]);
+    assert_eq!(files[2]["options"], options);
+
+    options["scale"] = "2 x 1 by 1/10 high".into();
+    options["bits"] = "16".into();
+    options["channels"] = "xy".into();
+    assert_eq!(files[1]["options"], options);
+    // 0.1 over 2 / 4 and over 1 / 4.
+    assert_eq!(files[1]["scale"], json!({ "x": "1/5", "y": "2/5", "exact": true }));
+    assert_eq!(files[1]["output"], "out/b_normal_2k.png");
+}
+
+#[test]
+fn one_file_is_reported_too() {
+    let folder = Folder::new();
+    folder.grey8("h.png", 3, 2, bumps8);
+    folder.run(&["normal", "h.png", "-o", "n.png", "--report", "r.json", "--scale", "3.14159265358979", "-q"]).ends(0);
+    let report = folder.json("r.json");
+    assert_eq!((&report["settings"], &report["totals"]["baked"]), (&Value::Null, &json!(1)));
+    let file = &report["files"][0];
+    assert_eq!((&file["input"], &file["output"]), (&json!("h.png"), &json!("n.png")));
+    assert_eq!(file["scale"], json!({ "x": "5419351/1725033", "y": "5419351/1725033", "exact": false }));
+    assert!(file["warnings"][0].as_str().unwrap().contains("too many digits"));
+}

@@ -1,0 +1,250 @@
+//! Bakes on a device of the host's: the same bytes from buffers and textures, in the host's own encoder.
+
+use crate::support::{FORMATS, Image, Random, every_baker, map_f32, map_u8, map_u16, options};
+use std::sync::OnceLock;
+use texbake::gpu::{Codes, Heights, Hosted, wgpu};
+use texbake::{
+    Baker, Channels, CodesRef, Depth, Edge, Edges, Encoding, HeightDepth, HeightMap, NormalFormat, NormalMap,
+    NormalOptions, Size,
+};
+use wgpu::{BufferUsages, TextureFormat, TextureUsages};
+
+struct Host {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+}
+
+/// Lavapipe, opened as a host program would; `None` where it is not installed.
+fn host() -> Option<&'static Host> {
+    static HOST: OnceLock<Option<Host>> = OnceLock::new();
+    let open = || {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends: wgpu::Backends::VULKAN,
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        });
+        let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
+        let adapter = adapters.into_iter().find(|adapter| adapter.get_info().name.contains("llvmpipe"))?;
+        let descriptor = wgpu::DeviceDescriptor {
+            required_features: wgpu::Features::TEXTURE_FORMAT_16BIT_NORM,
+            ..Default::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).ok()?;
+        Some(Host { device, queue })
+    };
+    let host = HOST.get_or_init(open).as_ref();
+    if host.is_none() {
+        println!("not tested: no lavapipe to host a bake");
+        assert!(std::env::var_os("TEXBAKE_REQUIRE_GPU").is_none_or(|value| value != "1"), "no lavapipe");
+    }
+    host
+}
+
+impl Host {
+    fn buffer(&self, bytes: usize, usage: BufferUsages) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: bytes as u64,
+            usage,
+            mapped_at_creation: false,
+        })
+    }
+
+    fn texture(&self, size: Size, format: TextureFormat, usage: TextureUsages) -> wgpu::Texture {
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: extent(size),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
+    }
+
+    /// The bytes of a buffer, read back as a host might.
+    fn read(&self, buffer: &wgpu::Buffer) -> Vec<u8> {
+        let copy = self.buffer(buffer.size() as usize, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, buffer.size());
+        self.queue.submit([encoder.finish()]);
+        copy.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
+        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+        copy.get_mapped_range(..).expect("mapped").to_vec()
+    }
+
+    /// Rows of a texture, without padding.
+    fn read_texture(&self, texture: &wgpu::Texture, size: Size, texel_bytes: usize) -> Vec<u8> {
+        let (row, pitch) = (size.width() * texel_bytes, (size.width() * texel_bytes).next_multiple_of(256));
+        let buffer = self.buffer(pitch * size.height(), BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch as u32), rows_per_image: None };
+        let target = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+        encoder.copy_texture_to_buffer(texture.as_image_copy(), target, extent(size));
+        self.queue.submit([encoder.finish()]);
+        self.read(&buffer).chunks(pitch).flat_map(|padded| padded[..row].to_vec()).collect()
+    }
+
+    /// Writes rows of `row` bytes, each padded to `pitch`.
+    fn write(&self, buffer: &wgpu::Buffer, bytes: &[u8], row: usize, pitch: usize) {
+        let mut padded = Vec::new();
+        for row in bytes.chunks(row) {
+            padded.extend_from_slice(row);
+            padded.resize(padded.len().next_multiple_of(pitch), 0xa5);
+        }
+        self.queue.write_buffer(buffer, 0, &padded);
+    }
+}
+
+fn extent(size: Size) -> wgpu::Extent3d {
+    wgpu::Extent3d { width: size.width() as u32, height: size.height() as u32, depth_or_array_layers: 1 }
+}
+
+fn height_bytes(map: &HeightMap) -> Vec<u8> {
+    match map.heights() {
+        texbake::Heights::U8(heights) => heights.to_vec(),
+        texbake::Heights::U16(heights) => heights.iter().flat_map(|height| height.to_ne_bytes()).collect(),
+        texbake::Heights::F32(heights) => heights.iter().flat_map(|height| height.to_ne_bytes()).collect(),
+    }
+}
+
+/// One map of each depth; the width leaves every padding unfilled.
+fn maps() -> [HeightMap; 3] {
+    let mut random = Random::new(21);
+    [
+        map_u8(61, 23, |_, _| random.bits() as u8),
+        map_u16(62, 19, |_, _| random.bits() as u16),
+        map_f32(63, 17, |_, _| random.bits() as u16 as f32 / 9.0),
+    ]
+}
+
+fn code_bytes(map: &NormalMap) -> &[u8] {
+    match map.codes() {
+        CodesRef::U8(codes) => codes,
+        codes => codes.bytes(),
+    }
+}
+
+#[test]
+fn buffers_get_the_reference_bytes() {
+    let Some(host) = host() else { return };
+    let hosted = Hosted::new(&host.device, &host.queue).unwrap();
+    let edges = Edges { x: Edge::Mirror, y: Edge::Wrap };
+    for map in maps() {
+        for format in FORMATS {
+            for channels in [Channels::Xyz, Channels::Xy] {
+                let options = NormalOptions { edges, ..options("7/3", NormalFormat { channels, ..format }) };
+                let bake = hosted.normal(map.size(), map.depth(), &options).unwrap();
+                let height = map.size().height();
+                let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
+                let heights = host.buffer(bake.heights_row_bytes() * height, usage);
+                let codes = host.buffer(bake.codes_row_bytes() * height, usage);
+                let row = map.size().width() * map.depth().bytes();
+                host.write(&heights, &height_bytes(&map), row, bake.heights_row_bytes());
+
+                let mut encoder = host.device.create_command_encoder(&Default::default());
+                bake.encode(&mut encoder, Heights::Buffer(&heights), Codes::Buffer(&codes)).unwrap();
+                host.queue.submit([encoder.finish()]);
+
+                let expected = Baker::reference().normal(&map, &options).unwrap();
+                let row = map.size().width() * channels.count() * format.depth.bytes();
+                let baked = host.read(&codes);
+                let rows: Vec<u8> =
+                    baked.chunks(bake.codes_row_bytes()).flat_map(|padded| padded[..row].to_vec()).collect();
+                assert!(rows == code_bytes(&expected), "{} heights, {options:?}", map.depth());
+            }
+        }
+    }
+}
+
+#[test]
+fn textures_get_the_reference_codes_and_an_opaque_alpha() {
+    let Some(host) = host() else { return };
+    let hosted = Hosted::new(&host.device, &host.queue).unwrap();
+    let sources = [TextureFormat::R8Unorm, TextureFormat::R16Unorm, TextureFormat::R32Float];
+    for (map, source) in maps().into_iter().zip(sources) {
+        for (encoding, depth, target, alpha) in [
+            (Encoding::Unorm, Depth::Bits8, TextureFormat::Rgba8Unorm, vec![255]),
+            (Encoding::Snorm, Depth::Bits8, TextureFormat::Rgba8Snorm, vec![127]),
+            (Encoding::Biased, Depth::Bits8, TextureFormat::Rgba8Uint, vec![255]),
+            (Encoding::Unorm, Depth::Bits16, TextureFormat::Rgba16Unorm, vec![255, 255]),
+            (Encoding::Float, Depth::Float16, TextureFormat::Rgba16Float, vec![0, 0x3c]),
+            (Encoding::Float, Depth::Float32, TextureFormat::Rgba32Float, 1f32.to_le_bytes().to_vec()),
+        ] {
+            let format = NormalFormat { encoding, depth, ..Default::default() };
+            let options = NormalOptions { edges: Edges::both(Edge::Clamp), ..options("24", format) };
+            let size = map.size();
+            let heights = host.texture(size, source, TextureUsages::COPY_SRC | TextureUsages::COPY_DST);
+            let row = (size.width() * map.depth().bytes()) as u32;
+            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
+            host.queue.write_texture(heights.as_image_copy(), &height_bytes(&map), layout, extent(size));
+            let codes = host.texture(size, target, TextureUsages::COPY_SRC | TextureUsages::COPY_DST);
+
+            let bake = hosted.normal(size, map.depth(), &options).unwrap();
+            let mut encoder = host.device.create_command_encoder(&Default::default());
+            bake.encode(&mut encoder, Heights::Texture(&heights), Codes::Texture(&codes)).unwrap();
+            host.queue.submit([encoder.finish()]);
+
+            let expected = Baker::reference().normal(&map, &options).unwrap();
+            let texels = code_bytes(&expected).chunks(3 * depth.bytes());
+            let with_alpha: Vec<u8> = texels.flat_map(|texel| [texel, &alpha].concat()).collect();
+            let baked = host.read_texture(&codes, size, 4 * depth.bytes());
+            assert!(baked == with_alpha, "{} heights to {target:?}", map.depth());
+        }
+    }
+}
+
+#[test]
+fn resources_that_do_not_fit_are_errors_that_say_so() {
+    let Some(host) = host() else { return };
+    let hosted = Hosted::new(&host.device, &host.queue).unwrap();
+    let size = Size::new(8, 8).unwrap();
+    let bake = hosted.normal(size, HeightDepth::U16, &NormalOptions::default()).unwrap();
+    let storage = |bytes| host.buffer(bytes, BufferUsages::STORAGE);
+    let texture = |format, usage| host.texture(size, format, usage);
+    let (good, small) = (storage(1024), storage(64));
+    let copies = TextureUsages::COPY_SRC | TextureUsages::COPY_DST;
+    let srgb = texture(TextureFormat::Rgba8UnormSrgb, copies);
+    let unusable = texture(TextureFormat::Rgba8Unorm, TextureUsages::TEXTURE_BINDING);
+    let wide = host.texture(Size::new(9, 8).unwrap(), TextureFormat::R16Unorm, copies);
+    let unbound = host.buffer(1024, BufferUsages::COPY_DST);
+    for (heights, codes, message) in [
+        (Heights::Buffer(&small), Codes::Buffer(&good), "heights buffer is 64 bytes: it must be at least 128 bytes"),
+        (Heights::Buffer(&good), Codes::Buffer(&small), "codes buffer is 64 bytes: it must be at least 192 bytes"),
+        (Heights::Texture(&wide), Codes::Buffer(&good), "heights texture is 9 x 8 x 1: it must be 8 x 8 x 1 texels"),
+        (
+            Heights::Buffer(&good),
+            Codes::Texture(&srgb),
+            "codes texture is Rgba8UnormSrgb: it must be Rgba8Unorm or Rgba8Uint",
+        ),
+        (Heights::Buffer(&good), Codes::Texture(&unusable), "usable as"),
+        (Heights::Buffer(&unbound), Codes::Buffer(&good), "STORAGE"),
+    ] {
+        let mut encoder = host.device.create_command_encoder(&Default::default());
+        let error = bake.encode(&mut encoder, heights, codes).unwrap_err().to_string();
+        assert!(error.contains(message), "{error}");
+    }
+}
+
+#[test]
+fn an_adapter_that_is_not_there_is_an_error_that_names_what_is() {
+    let error = Baker::gpu(Some("voodoo")).err().expect("no such adapter").to_string();
+    assert!(error.starts_with("adapter \"voodoo\": "), "{error}");
+}
+
+#[test]
+fn fast_is_within_one_code_of_exact() {
+    let maps = maps();
+    for subject in every_baker() {
+        for map in &maps {
+            for format in FORMATS.into_iter().filter(|format| format.encoding != Encoding::Float) {
+                let exact = options("24", format);
+                let fast = NormalOptions { precision: texbake::Precision::Fast, ..exact };
+                let [a, b] = [&exact, &fast].map(|options| Image::from(&subject.baker.normal(map, options).unwrap()));
+                let off = (0..a.bits.len()).map(|i| (a.number(i) - b.number(i)).abs());
+                let worst = off.fold(0.0, f64::max);
+                assert!(worst <= 1.0, "{}, {} heights, {format:?}: {worst} codes", subject.name, map.depth());
+            }
+        }
+    }
+}
