@@ -1,7 +1,7 @@
 //! Compute alone: heights in memory to codes in memory, beside a copy that moves as many bytes.
 //!
 //! ```text
-//! cargo bench --bench compute                    # all, about three minutes, with a table at the end
+//! cargo bench --bench compute                    # all, some minutes, with a table at the end
 //! cargo bench --bench compute -- 4096/u16        # what has this in its name
 //! ```
 //!
@@ -20,16 +20,50 @@ const SIDES: [usize; 3] = [1024, 4096, 8192];
 const HEIGHTS: [HeightDepth; 3] = [HeightDepth::U8, HeightDepth::U16, HeightDepth::F32];
 const OUTPUTS: [Depth; 2] = [Depth::Bits8, Depth::Bits16];
 
-/// The scalar reference takes seconds for more.
-const REFERENCE_TEXELS: usize = 1024 * 1024;
+/// What would take longer for one map is left out.
+const PATIENCE_SECONDS: f64 = 1.5;
 
-/// What is measured: a name, a baker and its precision. GPU bakers go here.
-fn bakers() -> Vec<(String, Baker, Precision)> {
-    vec![
-        ("reference".into(), Baker::reference(), Precision::Exact),
-        ("cpu exact".into(), Baker::cpu(), Precision::Exact),
-        ("cpu fast".into(), Baker::cpu(), Precision::Fast),
-    ]
+/// What is measured.
+struct Subject {
+    name: String,
+    baker: Baker,
+    precision: Precision,
+    seconds_per_texel: f64,
+}
+
+/// The reference, and the CPU and every GPU of this machine in both precisions.
+fn subjects() -> Vec<Subject> {
+    let mut subjects = vec![Subject::new("reference", Baker::reference(), Precision::Exact)];
+    for precision in [Precision::Exact, Precision::Fast] {
+        subjects.push(Subject::new("cpu", Baker::cpu(), precision));
+        for device in texbake::devices().iter().filter(|device| device.api != "cpu") {
+            let name = format!("{}:{}", device.api, device.name);
+            match Baker::gpu(Some(&name)) {
+                Ok(baker) => subjects.push(Subject::new(&name, baker, precision)),
+                Err(error) => println!("left out: {error}"),
+            }
+        }
+    }
+    subjects
+}
+
+impl Subject {
+    fn new(name: &str, baker: Baker, precision: Precision) -> Self {
+        let short = name.split(" (").next().unwrap_or(name);
+        let mut subject = Self { name: format!("{short} {precision}"), baker, precision, seconds_per_texel: 0.0 };
+        subject.seconds_per_texel = subject.try_out().expect("a small map is baked");
+        subject
+    }
+
+    /// Seconds that a texel takes once everything is compiled.
+    fn try_out(&self) -> Result<f64> {
+        let map = terrain(1024, HeightDepth::U16)?;
+        let options = NormalOptions { precision: self.precision, ..NormalOptions::default() };
+        self.baker.normal(&map, &options)?;
+        let start = Instant::now();
+        self.baker.normal(&map, &options)?;
+        Ok(start.elapsed().as_secs_f64() / map.size().texels() as f64)
+    }
 }
 
 fn main() {
@@ -40,7 +74,8 @@ fn main() {
         .without_plots()
         .configure_from_args();
     let table = Table::default();
-    for (name, baker, _) in bakers() {
+    let subjects = subjects();
+    for Subject { name, baker, .. } in &subjects {
         println!("{name}: {}", baker.name());
     }
     for side in SIDES {
@@ -48,7 +83,7 @@ fn main() {
             // Made by the first bench that runs.
             let map = LazyCell::new(|| terrain(side, heights).expect("its size is above zero"));
             for output in OUTPUTS {
-                bench_map(&mut criterion, &table, (side, heights), &map, output);
+                bench_map(&mut criterion, &table, &subjects, (side, heights), &map, output);
             }
         }
     }
@@ -60,6 +95,7 @@ fn main() {
 fn bench_map<F: FnOnce() -> HeightMap>(
     criterion: &mut Criterion,
     table: &Table,
+    subjects: &[Subject],
     (side, heights): (usize, HeightDepth),
     map: &LazyCell<HeightMap, F>,
     output: Depth,
@@ -88,12 +124,13 @@ fn bench_map<F: FnOnce() -> HeightMap>(
     bench("copy", &mut || copy(&source, black_box(&mut target)));
 
     let mut codes = Codes::zeroed(output, texels * format.channels.count());
-    for (name, baker, precision) in bakers() {
-        if name == "reference" && texels > REFERENCE_TEXELS {
+    for Subject { name, baker, precision, seconds_per_texel } in subjects {
+        if seconds_per_texel * texels as f64 > PATIENCE_SECONDS {
             continue;
         }
-        let options = NormalOptions { scale: Scale::texels(24), format, precision, ..NormalOptions::default() };
-        bench(&name, &mut || {
+        let options =
+            NormalOptions { scale: Scale::texels(24), format, precision: *precision, ..NormalOptions::default() };
+        bench(name, &mut || {
             baker.normal_into(black_box(map), &options, codes.as_mut()).expect("the options are in range");
         });
     }
@@ -146,12 +183,12 @@ impl Table {
     }
 
     fn print(&self) {
-        println!("\n{:<18} {:<14} {:>9} {:>10} {:>7}", "case", "what", "ms", "Mtexel/s", "GB/s");
+        println!("\n{:<18} {:<36} {:>9} {:>10} {:>7}", "case", "what", "ms", "Mtexel/s", "GB/s");
         for row in self.rows.borrow_mut().iter_mut() {
             row.seconds.sort_by(f64::total_cmp);
             let median = row.seconds[row.seconds.len() / 2];
             let [mtexels, gigabytes] = [row.texels as f64 / median / 1e6, row.bytes as f64 / median / 1e9];
-            println!("{:<18} {:<14} {:>9.2} {mtexels:>10.1} {gigabytes:>7.2}", row.case, row.name, median * 1e3);
+            println!("{:<18} {:<36} {:>9.2} {mtexels:>10.1} {gigabytes:>7.2}", row.case, row.name, median * 1e3);
         }
     }
 }
