@@ -76,7 +76,7 @@ fn the_channel_with_the_heights_is_found_or_asked_for() {
     let path = folder.path("c.exr");
     let encoding = scan_lines(Compression::ZIP16, LineOrder::Increasing);
     let (one, two, three) = (vec![1.0, 2.0], vec![3.0, 4.0], vec![5.0, 6.0]);
-    let mut store = |named: &[(&str, Vec<f32>)]| save(&path, 2, 1, encoding, channels(named));
+    let store = |named: &[(&str, Vec<f32>)]| save(&path, 2, 1, encoding, channels(named));
 
     store(&[("any", one.clone()), ("A", two.clone())]);
     assert_eq!(read_all_ways(&path, &default()).unwrap(), Values::F32(one.clone()));
