@@ -90,7 +90,7 @@ impl<'a> Progress<'a> {
                     let warnings = outcome.warnings.iter().chain(fallback.as_ref());
                     lines.extend(warnings.map(|text| format!("warning: {}: {text}", job.input.display())));
                 }
-                let print = || lines.iter().for_each(|line| say(line));
+                let print = || lines.iter().for_each(say);
                 self.bar.as_ref().map_or_else(print, |bar| bar.suspend(print));
             }
         }

@@ -182,3 +182,29 @@ impl TiffEncoder {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tiff::decoder::{Decoder, DecodingResult};
+
+    #[test]
+    fn a_big_tiff_differs_only_in_its_offsets() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("big.tif");
+        let (size, format) = (Size::new(2, 3).unwrap(), NormalFormat { depth: Depth::Bits16, ..Default::default() });
+        let replacement = Replacement::create(&path).unwrap();
+        let output = replacement.output().unwrap();
+        let mut encoder = TiffEncoder { path: path.clone(), output, size, format, big: true };
+        encoder.header(0).unwrap();
+        let mut sink = FileSink::new(encoder, replacement, size, format);
+        let codes: Vec<u16> = (0..18).map(|i| i * 3000).collect();
+        sink.write(CodesRef::U16(&codes)).unwrap();
+        sink.finish().unwrap();
+
+        assert_eq!(std::fs::read(&path).unwrap()[2..4], 43u16.to_ne_bytes());
+        let mut decoder = Decoder::new(std::fs::File::open(&path).unwrap()).unwrap();
+        assert_eq!(decoder.dimensions().unwrap(), (2, 3));
+        assert!(matches!(decoder.read_image().unwrap(), DecodingResult::U16(found) if found == codes));
+    }
+}
