@@ -78,8 +78,9 @@ pub(super) struct HeightRows {
     pick: Pick,
     srgb: Option<SrgbTable>,
     no_data: Option<f32>,
+    /// Whether the file's samples are the heights; else a row of samples, and the heights picked from it, are held.
+    in_place: bool,
     next_row: usize,
-    /// One row of samples and the heights picked from it, if a row cannot be read in place.
     interleaved: Samples,
     picked: Samples,
 }
@@ -160,7 +161,7 @@ impl HeightRows {
             warnings.push(srgb::WARNING.into());
         }
         let in_place = layout.per_texel() == 1 && srgb.is_none();
-        let buffered = if in_place { 0 } else { 1 };
+        let buffered_rows = usize::from(!in_place);
         let rows = Self {
             path: path.into(),
             samples: opened.samples,
@@ -168,15 +169,12 @@ impl HeightRows {
             pick,
             srgb,
             no_data: opened.no_data,
+            in_place,
             next_row: 0,
-            interleaved: Samples::zeroed(layout.depth, buffered * layout.per_row()),
-            picked: Samples::zeroed(layout.depth, buffered * layout.size.width()),
+            interleaved: Samples::zeroed(layout.depth, buffered_rows * layout.per_row()),
+            picked: Samples::zeroed(layout.depth, buffered_rows * layout.size.width()),
         };
         Ok((rows, warnings))
-    }
-
-    fn reads_in_place(&self) -> bool {
-        self.layout.per_texel() == 1 && self.srgb.is_none()
     }
 
     /// Reads the row `row` and picks its heights.
@@ -227,7 +225,7 @@ impl RowSource for HeightRows {
             let range = format!("whole rows of {width} {} heights, at most {left}", self.depth());
             return Err(Error::parameter("room for rows", format_args!("{count} {depth} heights"), range));
         }
-        if self.reads_in_place() {
+        if self.in_place {
             self.samples.read(part_mut(&mut rows, 0..count))?;
         } else {
             for row in 0..count / width {

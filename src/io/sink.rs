@@ -26,7 +26,7 @@ pub(super) struct FileSink {
 
 impl FileSink {
     /// A file whose rows go through `encoder` into `replacement`.
-    pub fn new(
+    pub fn boxed(
         encoder: impl RowEncoder + 'static,
         replacement: Replacement,
         size: Size,

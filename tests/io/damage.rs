@@ -39,6 +39,7 @@ fn samples(folder: &Folder) -> Vec<PathBuf> {
         ("k.exr", Compression::RLE, Blocks::Tiles(::exr::prelude::Vec2(16, 16))),
         ("l.exr", Compression::PXR24, Blocks::ScanLines),
         ("m.exr", Compression::B44, Blocks::ScanLines),
+        ("q.exr", Compression::DWAA(None), Blocks::ScanLines),
     ] {
         let channel = AnyChannel::new("Y", FlatSamples::F32(floats[..24 * 40].to_vec()));
         let encoding =
@@ -69,7 +70,7 @@ fn variant(whole: &[u8], noise: &mut Noise) -> Vec<u8> {
     let mut bytes = whole.to_vec();
     let edits = 1 + noise.next() % 4;
     for _ in 0..edits {
-        let reach = if noise.next() % 3 == 0 { bytes.len() } else { bytes.len().min(400) };
+        let reach = if noise.next().is_multiple_of(3) { bytes.len() } else { bytes.len().min(400) };
         let at = noise.next() as usize % reach;
         bytes[at] = match noise.next() % 4 {
             0 => 0,
@@ -78,7 +79,7 @@ fn variant(whole: &[u8], noise: &mut Noise) -> Vec<u8> {
             _ => noise.next() as u8,
         };
     }
-    if noise.next() % 8 == 0 {
+    if noise.next().is_multiple_of(8) {
         bytes.truncate(noise.next() as usize % bytes.len());
     }
     bytes
@@ -86,7 +87,7 @@ fn variant(whole: &[u8], noise: &mut Noise) -> Vec<u8> {
 
 /// Variants per file; more are tried with TEXBAKE_DAMAGE=n.
 fn variants() -> u32 {
-    std::env::var("TEXBAKE_DAMAGE").ok().and_then(|count| count.parse().ok()).unwrap_or(300)
+    std::env::var("TEXBAKE_DAMAGE").ok().and_then(|count| count.parse().ok()).unwrap_or(1000)
 }
 
 #[test]

@@ -6,7 +6,8 @@ use crate::io::samples::{Layout, Opened, SampleRows, Samples, copy, len, part, p
 use crate::io::{ReadOptions, limits};
 use crate::map::{HeightDepth, HeightsMut};
 use exr::block::UncompressedBlock;
-use exr::block::chunk::Chunk;
+use exr::block::chunk::{Chunk, CompressedBlock};
+use exr::compression::Compression;
 use exr::math::Vec2;
 use exr::meta::attribute::{ChannelDescription, SampleType};
 use exr::meta::header::Header;
@@ -177,12 +178,13 @@ impl ExrRows {
         self.decoded = None;
         let (width, height) = (self.layout.size.width(), self.layout.size.height());
         for column in 0..self.across {
-            let block = self.read_block(self.offsets[index * self.across + column])?;
             let (left, top) = (column * self.block_width, index * self.block_rows);
             let (columns, rows) = (self.block_width.min(width - left), self.block_rows.min(height - top));
+            let raw_bytes = columns * rows * self.texel_bytes;
+            let block = self.read_block(self.offsets[index * self.across + column], raw_bytes)?;
             let expected = (self.layer, Vec2(0, 0), Vec2(left, top), Vec2(columns, rows));
             let found = (block.index.layer, block.index.level, block.index.pixel_position, block.index.pixel_size);
-            if found != expected || block.data.len() != columns * rows * self.texel_bytes {
+            if found != expected || block.data.len() != raw_bytes {
                 return Err(Error::file(&self.path, "a block is not where its table says", DAMAGED));
             }
             self.put(&block.data, left, columns, rows);
@@ -191,14 +193,37 @@ impl ExrRows {
         Ok(())
     }
 
-    fn read_block(&mut self, offset: u64) -> Result<UncompressedBlock> {
+    /// Reads a block of `raw_bytes` bytes before compression.
+    fn read_block(&mut self, offset: u64, raw_bytes: usize) -> Result<UncompressedBlock> {
         // An offset that was never written is zero: the file is incomplete.
         if offset == 0 || offset >= self.file_bytes {
             return Err(Error::file(&self.path, TRUNCATED, "copy or export it again"));
         }
         self.file.seek(SeekFrom::Start(offset)).map_err(Error::io(&self.path))?;
         let chunk = Chunk::read(&mut self.file, &self.meta).map_err(reason(&self.path))?;
+        if !self.sections_are_credible(&chunk, raw_bytes) {
+            return Err(Error::file(&self.path, "a compressed block claims more than it can hold", DAMAGED));
+        }
         UncompressedBlock::decompress_chunk(chunk, &self.meta, false).map_err(reason(&self.path))
+    }
+
+    /// Whether a DWA block's sections are no larger than its texels, in whole cells of 8 x 8, can need.
+    ///
+    /// The decoder allocates what the ten counters at the block's start claim, before it looks at the data.
+    fn sections_are_credible(&self, chunk: &Chunk, raw_bytes: usize) -> bool {
+        let compression = self.meta.headers.get(chunk.layer_index).map(|header| header.compression);
+        let Some(Compression::DWAA(_) | Compression::DWAB(_)) = compression else { return true };
+        let bytes = match &chunk.compressed_block {
+            CompressedBlock::ScanLine(block) => &block.compressed_pixels_le,
+            CompressedBlock::Tile(block) => &block.compressed_pixels_le,
+            _ => return false,
+        };
+        if bytes.len() == raw_bytes {
+            // Not compressed at all, since that would have made it larger.
+            return true;
+        }
+        let bound = 2 * (self.block_width + 7) * (self.block_rows + 7) * self.texel_bytes + 4096;
+        bytes.as_chunks::<8>().0.iter().take(10).all(|counter| u64::from_le_bytes(*counter) <= bound as u64)
     }
 
     /// Copies the wanted channels of a block to their place; a block holds, line by line, channel after channel.

@@ -79,7 +79,7 @@ pub(crate) fn create(path: &Path, size: Size, format: NormalFormat) -> Result<Bo
         offsets: Vec::new(),
         headers,
     };
-    Ok(FileSink::new(encoder, replacement, size, format))
+    Ok(FileSink::boxed(encoder, replacement, size, format))
 }
 
 /// The bytes before the first block, with zeros for the table of offsets.

@@ -35,7 +35,7 @@ pub(crate) fn create(path: &Path, size: Size, format: NormalFormat) -> Result<Bo
     let whole = encoder.row_bytes() as u128 * size.height() as u128;
     encoder.big = whole + whole / 100 + (1 << 20) > u32::MAX.into();
     encoder.header(0).map_err(Error::io(path))?;
-    Ok(FileSink::new(encoder, replacement, size, format))
+    Ok(FileSink::boxed(encoder, replacement, size, format))
 }
 
 /// A directory entry: a tag and its values.
@@ -197,7 +197,7 @@ mod tests {
         let output = replacement.output().unwrap();
         let mut encoder = TiffEncoder { path: path.clone(), output, size, format, big: true };
         encoder.header(0).unwrap();
-        let mut sink = FileSink::new(encoder, replacement, size, format);
+        let mut sink = FileSink::boxed(encoder, replacement, size, format);
         let codes: Vec<u16> = (0..18).map(|i| i * 3000).collect();
         sink.write(CodesRef::U16(&codes)).unwrap();
         sink.finish().unwrap();
