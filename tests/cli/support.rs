@@ -56,6 +56,8 @@ impl Folder {
     pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_texbake"));
         command.args(arguments).current_dir(self.0.path());
+        // Mesa's Vulkan layer complains on stderr where there is none.
+        command.env("XDG_RUNTIME_DIR", self.0.path());
         command
     }
 
