@@ -6,7 +6,9 @@ use crate::error::{Error, Result};
 use crate::exact::AxisScale;
 use crate::map::{CodesMut, Edge, HeightDepth, HeightMap, NormalMap, Size};
 use crate::ops::normal::{NormalOptions, NormalPlan};
-use crate::stream::{BandReader, CodeSink, CodeWriter, MapBands, MapSink, Monitor, RowSink, RowSource, read_map};
+use crate::stream::{
+    BandReader, CodeSink, CodeWriter, MapBands, MapSink, Monitor, RowOrder, RowSink, RowSource, read_map,
+};
 use std::sync::Arc;
 
 /// Bakes maps on one backend.
@@ -44,7 +46,7 @@ pub struct Ran {
     pub scale: AxisScale,
 }
 
-/// Maps up to this many bytes are held in memory if they wrap from bottom to top; larger ones are read twice.
+/// Maps up to this many bytes are held in memory if their last row is needed first; larger ones are read twice.
 const HELD_BYTES: usize = 64 << 20;
 
 impl Baker {
@@ -152,9 +154,14 @@ impl Baker {
         let ((backend, plan), fallback) = self.run(|backend| {
             let source = open()?;
             let plan = NormalPlan::new(options, source.size(), source.depth())?;
-            let writer = CodeWriter::new(create(plan.size)?, plan.format.depth, plan.row_codes());
+            let sink = create(plan.size)?;
+            let order = match (plan.edges.y, plan.size.height()) {
+                (Edge::Wrap, height) if height > 1 && sink.takes_first_row_last() => RowOrder::FirstRowLast { height },
+                _ => RowOrder::FromTop,
+            };
+            let writer = CodeWriter::new(sink, plan.format.depth, plan.row_codes(), order);
             let mut sink = Monitored { sink: writer, width: plan.size.width(), monitor };
-            stream(backend, &plan, source, &mut sink)?;
+            stream(backend, &plan, source, order, &mut sink)?;
             sink.sink.finish()?;
             Ok((backend.name(), plan))
         })?;
@@ -177,15 +184,16 @@ fn stream(
     backend: &dyn Backend,
     plan: &NormalPlan,
     mut source: Box<dyn RowSource>,
+    order: RowOrder,
     sink: &mut dyn CodeSink,
 ) -> Result<()> {
     let band_rows = backend.band_rows(plan);
-    let wraps = plan.edges.y == Edge::Wrap;
-    if wraps && plan.size.texels() * plan.depth.bytes() <= HELD_BYTES {
+    let needs_last_row_first = plan.edges.y == Edge::Wrap && order == RowOrder::FromTop;
+    if needs_last_row_first && plan.size.texels() * plan.depth.bytes() <= HELD_BYTES {
         let map = read_map(source.as_mut())?;
         return backend.normal(plan, &mut MapBands::new(&map, plan.edges.y, band_rows), sink);
     }
-    backend.normal(plan, &mut BandReader::new(source, plan.edges.y, band_rows), sink)
+    backend.normal(plan, &mut BandReader::new(source, plan.edges.y, order, band_rows), sink)
 }
 
 /// Counts what passes to a sink.

@@ -1,4 +1,50 @@
-//! texbake bakes height maps into normal maps, on a GPU or a CPU: the same bytes on both.
+//! texbake bakes height maps into tangent-space normal maps, on a GPU through WGSL compute kernels or on the CPU.
+//!
+//! In [`Precision::Exact`], the default, every backend writes the same bytes, and for 8- and 16-bit heights each code
+//! is the one nearest to what the formula gives in real arithmetic.
+//!
+//! ```
+//! use texbake::{Baker, Grid, HeightMap, NormalOptions, Scale};
+//!
+//! // Or HeightMap::read("height.png")?
+//! let heights = HeightMap::from(Grid::from_fn(256, 256, |x, y| (x ^ y) as u8)?);
+//! let options = NormalOptions { scale: Scale::texels(24), ..Default::default() };
+//! let normals = Baker::auto().normal(&heights, &options)?;
+//! # let folder = tempfile::tempdir().unwrap();
+//! # let path = folder.path().join("normal.png");
+//! normals.write(path)?;
+//! # Ok::<(), texbake::Error>(())
+//! ```
+//!
+//! - [`Baker`] is a backend, chosen once: [`Baker::auto`], [`Baker::cpu`], [`Baker::gpu`].
+//! - [`HeightMap`] and [`NormalMap`] are maps with what their numbers mean attached; [`io`] reads and writes them.
+//! - [`Baker::normal_rows`] bakes while rows are read and written, in memory that does not grow with the map;
+//!   [`stream`] has the traits of its two ends.
+#![cfg_attr(feature = "gpu", doc = "- [`gpu::Hosted`] bakes on the caller's own wgpu device, without a readback.")]
+//!
+//! # What is computed
+//!
+//! A code H of B bits means the height h = H / (2^B - 1); a float is the height itself. With the scale s, the height
+//! of h = 1 in widths of one texel, the slopes at column i, row j (rows count down) are
+//!
+//! ```text
+//! dx = s/2 [h(i+1, j) - h(i-1, j)]      dy = s/2 [h(i, j+1) - h(i, j-1)]        (FGED2 eq. 7.41)
+//! m = (-dx, -dy, 1) / sqrt(dx^2 + dy^2 + 1)                                      (eq. 7.43)
+//! ```
+//!
+//! where FGED2 is Eric Lengyel, Foundations of Game Engine Development, volume 2: Rendering, 2019. Other stencils
+//! ([`Filter`]) weigh three rows instead of one. With [`Convention::Gl`] y is negated before it is rounded.
+//!
+//! # Degenerate cases
+//!
+//! | case | result |
+//! | --- | --- |
+//! | one row or one column | that axis is its own neighbour: no slope |
+//! | two rows or columns that wrap | both neighbours are the same texel: no slope |
+//! | scale 0, or a flat map | (0, 0, 1) exactly, on every device |
+//! | a float height that is NaN or infinite | [`Error::NotFinite`] names the first |
+//! | float heights below 2^-90, slopes below 2^-25, components below 2^-100 in magnitude | count as zero |
+//! | float slopes up to and beyond `f32::MAX` | no overflow: the direction is right |
 
 mod backend;
 mod baker;
@@ -7,6 +53,14 @@ pub mod batch;
 mod devices;
 mod error;
 mod exact;
+#[cfg(feature = "gpu")]
+pub mod gpu {
+    //! Bakes on a wgpu device of the caller's.
+
+    pub use crate::backend::gpu::{Codes, Heights, Hosted, NormalBake};
+    /// The version that [`Hosted`] works with.
+    pub use wgpu;
+}
 pub mod io;
 mod map;
 mod names;
@@ -21,11 +75,4 @@ pub use map::{
     Channels, Codes, CodesMut, CodesRef, Convention, Depth, Edge, Edges, Encoding, Grid, HeightDepth, HeightMap,
     Heights, HeightsMut, NormalFormat, NormalMap, Size,
 };
-#[cfg(feature = "gpu")]
-pub mod gpu {
-    //! Bakes on a wgpu device of the caller's.
-
-    pub use crate::backend::gpu::{Codes, Heights, Hosted, NormalBake};
-    pub use wgpu;
-}
 pub use ops::normal::{Filter, NormalOptions, Precision};

@@ -144,7 +144,7 @@ impl NormalMap {
     /// As [`create_normals`], and what writing meets.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<()> {
         let mut sink = create_normals(path.as_ref(), self.size(), self.format())?;
-        sink.write(self.codes())?;
+        sink.write(0, self.codes())?;
         sink.finish()
     }
 }

@@ -8,8 +8,11 @@ use std::path::Path;
 
 /// Writes one file format.
 pub(super) trait RowEncoder: Send {
-    /// Writes whole rows, all of the depth that the file was created with.
-    fn write(&mut self, rows: CodesRef<'_>) -> Result<()>;
+    /// Whether row 0 may come after all others.
+    fn takes_first_row_last(&self) -> bool;
+
+    /// Writes whole rows from row `first` on, all of the depth that the file was created with.
+    fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()>;
 
     /// Writes what follows the last row.
     fn finish(self: Box<Self>) -> Result<()>;
@@ -21,7 +24,11 @@ pub(super) struct FileSink {
     replacement: Replacement,
     depth: Depth,
     row_codes: usize,
-    rows_left: usize,
+    height: usize,
+    /// The row that comes next; `None` after the last.
+    next_row: Option<usize>,
+    /// Row 0 was left for the end.
+    first_row_left: bool,
 }
 
 impl FileSink {
@@ -33,27 +40,43 @@ impl FileSink {
         format: NormalFormat,
     ) -> Box<dyn RowSink> {
         let row_codes = size.width() * format.channels.count();
-        let (depth, rows_left) = (format.depth, size.height());
-        Box::new(Self { encoder: Box::new(encoder), replacement, depth, row_codes, rows_left })
+        let (depth, height) = (format.depth, size.height());
+        let encoder = Box::new(encoder);
+        Box::new(Self { encoder, replacement, depth, row_codes, height, next_row: Some(0), first_row_left: false })
     }
 }
 
 impl RowSink for FileSink {
-    fn write(&mut self, rows: CodesRef<'_>) -> Result<()> {
-        let (count, depth) = (rows.len(), depth_of(rows));
-        let whole = count % self.row_codes == 0 && count / self.row_codes <= self.rows_left;
-        if depth != self.depth || !whole {
-            let (row, left) = (self.row_codes, self.rows_left);
-            let range = format!("whole rows of {row} codes of depth {}, at most {left}", self.depth);
-            return Err(Error::parameter("rows", format_args!("{count} codes of depth {depth}"), range));
+    fn takes_first_row_last(&self) -> bool {
+        self.encoder.takes_first_row_last()
+    }
+
+    fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
+        let (count, depth) = (rows.len() / self.row_codes, depth_of(rows));
+        let starts_late = self.next_row == Some(0) && first == 1 && self.takes_first_row_last();
+        if starts_late {
+            (self.next_row, self.first_row_left) = (Some(1), true);
         }
-        self.rows_left -= count / self.row_codes;
-        self.encoder.write(rows)
+        let end = if first == 0 && self.first_row_left { 1 } else { self.height };
+        let whole = count > 0 && rows.len() % self.row_codes == 0;
+        if depth != self.depth || !whole || self.next_row != Some(first) || first + count > end {
+            let given = format!("{} codes of depth {depth} from row {first} on", rows.len());
+            let next = self.next_row.map_or("no more".into(), |row| format!("up to {} from row {row} on", end - row));
+            let range = format!("whole rows of {} codes of depth {}, {next}", self.row_codes, self.depth);
+            return Err(Error::parameter("rows", given, range));
+        }
+        self.encoder.write(first, rows)?;
+        self.next_row = match first + count {
+            next if next < end => Some(next),
+            _ if self.first_row_left && first > 0 => Some(0),
+            _ => None,
+        };
+        Ok(())
     }
 
     fn finish(self: Box<Self>) -> Result<()> {
-        if self.rows_left > 0 {
-            return Err(Error::parameter("rows", format_args!("{} too few", self.rows_left), "complete"));
+        if let Some(row) = self.next_row {
+            return Err(Error::parameter("rows", format_args!("without row {row}"), "complete"));
         }
         self.encoder.finish()?;
         self.replacement.commit()

@@ -2,6 +2,7 @@
 
 use super::band::{Band, HeightBand, HeightBands};
 use super::channel::{Recycling, recycling};
+use super::order::RowOrder;
 use crate::error::Result;
 use crate::map::{Edge, Grid, HeightDepth, HeightMap, HeightsMut, Size};
 use std::thread::JoinHandle;
@@ -40,11 +41,15 @@ pub struct BandReader {
 
 impl BandReader {
     /// Reads `source` in bands of `band_rows` rows; `edge` says what lies above the first row and below the last.
-    pub fn new(source: Box<dyn RowSource>, edge: Edge, band_rows: usize) -> Self {
+    ///
+    /// # Panics
+    /// If `band_rows` is 0, or row 0 shall come last of a map that does not wrap or has no other row.
+    pub fn new(source: Box<dyn RowSource>, edge: Edge, order: RowOrder, band_rows: usize) -> Self {
         assert!(band_rows > 0, "a band has rows");
+        assert!(order == RowOrder::FromTop || edge == Edge::Wrap && source.size().height() > 1, "row 0 cannot be last");
         let (bands, mut filled) = recycling(BUFFERS);
         let read_all = move || {
-            let mut cutter = BandCutter::new(source, edge)?;
+            let mut cutter = BandCutter::new(source, edge, order)?;
             while let Some(buffer) = filled.take() {
                 let buffer = buffer.unwrap_or_else(|| cutter.buffer(band_rows));
                 match cutter.next(buffer, band_rows)? {
@@ -78,23 +83,30 @@ impl HeightBands for BandReader {
 struct BandCutter {
     source: Box<dyn RowSource>,
     edge: Edge,
+    order: RowOrder,
+    /// The first row of the next band; the height when only row 0 is left, or nothing.
     next_row: usize,
-    /// The row before the next band and the next band's first row.
+    /// Rows read so far.
+    read: usize,
+    /// The last rows read: those that the next band has in common with this one.
     carried: Vec<u8>,
-    /// The rows that a map that wraps needs at its other end.
-    first_row: Vec<u8>,
+    /// Rows 0 and 1 of a map that wraps, for its other end.
+    first_rows: Vec<u8>,
+    /// The last row of a map that wraps.
     last_row: Vec<u8>,
+    done: bool,
 }
 
 impl BandCutter {
-    fn new(mut source: Box<dyn RowSource>, edge: Edge) -> Result<Self> {
+    fn new(mut source: Box<dyn RowSource>, edge: Edge, order: RowOrder) -> Result<Self> {
         let mut last_row = Vec::new();
-        if edge == Edge::Wrap {
+        if edge == Edge::Wrap && order == RowOrder::FromTop {
             let mut row = BandBuffer::new(source.size().width(), source.depth(), 1);
             source.read_last_row(row.rows_mut(0, 1))?;
             last_row = row.slot(0).to_vec();
         }
-        Ok(Self { source, edge, next_row: 0, carried: Vec::new(), first_row: Vec::new(), last_row })
+        let (next_row, read, done) = (order.first_row(), 0, false);
+        Ok(Self { source, edge, order, next_row, read, carried: Vec::new(), first_rows: Vec::new(), last_row, done })
     }
 
     fn buffer(&self, band_rows: usize) -> BandBuffer {
@@ -102,40 +114,66 @@ impl BandCutter {
         BandBuffer::new(size.width(), self.source.depth(), band_rows.min(size.height()) + 2)
     }
 
-    /// Fills `buffer`, whose slot k holds row `first - 1 + k`, with the next band.
+    /// Fills `buffer` with the next band.
     fn next(&mut self, mut buffer: BandBuffer, band_rows: usize) -> Result<Option<BandBuffer>> {
-        let (first, height) = (self.next_row, self.source.size().height());
-        let count = band_rows.min(height - first);
-        if count == 0 {
+        if self.done {
             return Ok(None);
         }
-        buffer.body_rows = count;
-        let known = self.carried.len() / buffer.row_bytes();
-        buffer.bytes_mut()[..self.carried.len()].copy_from_slice(&self.carried);
-        let (from, to) = if first == 0 {
-            (1, (count + 1).min(height) + 1)
-        } else {
-            (known, count + 1 + usize::from(first + count < height))
-        };
-        if from < to {
-            self.source.read(buffer.rows_mut(from, to - from))?;
+        let (first, height) = (self.next_row, self.source.size().height());
+        if first == height {
+            self.fill_first_row(&mut buffer);
+            self.done = true;
+            return Ok(Some(buffer));
         }
-        if first == 0 {
-            self.first_row = buffer.slot(1).to_vec();
-            let above = self.edge.resolve(-1, height);
-            let row = if self.edge == Edge::Wrap { self.last_row.clone() } else { buffer.slot(above + 1).to_vec() };
-            buffer.slot_mut(0).copy_from_slice(&row);
-        }
-        if first + count == height {
-            let below = self.edge.resolve(height as isize, height);
-            let row =
-                if self.edge == Edge::Wrap { self.first_row.clone() } else { buffer.slot(below + 1 - first).to_vec() };
-            buffer.slot_mut(count + 1).copy_from_slice(&row);
-        }
-        let carried = count * buffer.row_bytes()..(count + 2) * buffer.row_bytes();
-        self.carried = buffer.bytes()[carried].to_vec();
-        self.next_row = first + count;
+        buffer.body_rows = band_rows.min(height - first);
+        self.fill(&mut buffer, first)?;
+        self.next_row = first + buffer.body_rows;
+        self.done = self.next_row == height && self.order == RowOrder::FromTop;
         Ok(Some(buffer))
+    }
+
+    /// Reads the band from row `first` on; row r stands in slot r + 1 - `first`.
+    fn fill(&mut self, buffer: &mut BandBuffer, first: usize) -> Result<()> {
+        let (height, end) = (self.source.size().height(), first + buffer.body_rows);
+        let row_bytes = buffer.row_bytes();
+        let carried_slot = self.read + 1 - first - self.carried.len() / row_bytes;
+        buffer.bytes_mut()[carried_slot * row_bytes..][..self.carried.len()].copy_from_slice(&self.carried);
+
+        let to = (end + 1).min(height);
+        if self.read < to {
+            self.source.read(buffer.rows_mut(self.read + 1 - first, to - self.read))?;
+        }
+        if self.read == 0 {
+            let slots = 1 - first..2 - first + usize::from(to > 1);
+            self.first_rows = buffer.bytes()[slots.start * row_bytes..slots.end * row_bytes].to_vec();
+        }
+        self.read = to;
+
+        if first == 0 {
+            let above = match self.edge {
+                Edge::Wrap => self.last_row.clone(),
+                edge => buffer.slot(edge.resolve(-1, height) + 1).to_vec(),
+            };
+            buffer.slot_mut(0).copy_from_slice(&above);
+        }
+        if end == height {
+            self.last_row = buffer.slot(buffer.body_rows).to_vec();
+            let below = match self.edge {
+                Edge::Wrap => self.first_rows[..row_bytes].to_vec(),
+                edge => buffer.slot(edge.resolve(height as isize, height) + 1 - first).to_vec(),
+            };
+            buffer.slot_mut(buffer.body_rows + 1).copy_from_slice(&below);
+        }
+        let shared = buffer.body_rows * row_bytes..(to + 1 - first) * row_bytes;
+        self.carried = buffer.bytes()[shared].to_vec();
+        Ok(())
+    }
+
+    /// Row 0 as a band: the last row above it, row 1 below.
+    fn fill_first_row(&self, buffer: &mut BandBuffer) {
+        buffer.body_rows = 1;
+        let band = [self.last_row.as_slice(), &self.first_rows].concat();
+        buffer.bytes_mut()[..band.len()].copy_from_slice(&band);
     }
 }
 

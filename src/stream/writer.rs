@@ -1,6 +1,7 @@
 //! Rows of codes that leave for a file, on a thread of its own.
 
 use super::channel::{Filling, recycling};
+use super::order::RowOrder;
 use crate::error::{Error, Result};
 use crate::map::{Codes, CodesMut, CodesRef, Depth};
 use std::thread::JoinHandle;
@@ -14,13 +15,18 @@ pub trait CodeSink {
     fn write(&mut self, rows: usize, fill: &mut dyn FnMut(&mut CodesMut<'_>) -> Result<()>) -> Result<()>;
 }
 
-/// A map that is written from the top.
+/// A map that is written row by row, in a [`RowOrder`].
 pub trait RowSink: Send {
-    /// Writes the next rows.
+    /// Whether row 0 may come after all others ([`RowOrder::FirstRowLast`]).
+    fn takes_first_row_last(&self) -> bool {
+        false
+    }
+
+    /// Writes rows from row `first` on.
     ///
     /// # Errors
     /// The system's or the format's reason.
-    fn write(&mut self, rows: CodesRef<'_>) -> Result<()>;
+    fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()>;
 
     /// Completes the file under its final name. Without this call there is no file.
     ///
@@ -41,12 +47,15 @@ pub struct CodeWriter {
 }
 
 impl CodeWriter {
-    /// Writes rows of `row_codes` codes of `depth` to `sink`.
-    pub fn new(mut sink: Box<dyn RowSink>, depth: Depth, row_codes: usize) -> Self {
+    /// Writes rows of `row_codes` codes of `depth`, which come in this order, to `sink`.
+    pub fn new(mut sink: Box<dyn RowSink>, depth: Depth, row_codes: usize, order: RowOrder) -> Self {
         let (full, filling) = recycling::<Codes>(BUFFERS);
         let write_all = move || {
+            let mut first = order.first_row();
             while let Some(codes) = full.receive() {
-                sink.write(codes.as_ref())?;
+                sink.write(first, codes.as_ref())?;
+                let last = first + codes.as_ref().len() / row_codes - 1;
+                first = order.row_after(last);
                 full.give_back(codes);
             }
             Ok(sink)

@@ -133,12 +133,15 @@ pub fn write(path: &Path, width: usize, height: usize, format: NormalFormat, cod
     let row = width * format.channels.count();
     for y in 0..height {
         let range = y * row..(y + 1) * row;
-        sink.write(match codes {
-            CodesRef::U8(codes) => CodesRef::U8(&codes[range]),
-            CodesRef::U16(codes) => CodesRef::U16(&codes[range]),
-            CodesRef::F16(codes) => CodesRef::F16(&codes[range]),
-            CodesRef::F32(codes) => CodesRef::F32(&codes[range]),
-        })?;
+        sink.write(
+            y,
+            match codes {
+                CodesRef::U8(codes) => CodesRef::U8(&codes[range]),
+                CodesRef::U16(codes) => CodesRef::U16(&codes[range]),
+                CodesRef::F16(codes) => CodesRef::F16(&codes[range]),
+                CodesRef::F32(codes) => CodesRef::F32(&codes[range]),
+            },
+        )?;
     }
     sink.finish()
 }

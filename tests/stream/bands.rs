@@ -3,7 +3,7 @@
 use super::rows::MemorySource;
 use crate::oracle::neighbour;
 use crate::support::{EDGES, Random, map_f32, map_u8, map_u16};
-use texbake::stream::{Band, BandReader, HeightBand, HeightBands, MapBands, RowSource, read_map};
+use texbake::stream::{Band, BandReader, HeightBand, HeightBands, MapBands, RowOrder, RowSource, read_map};
 use texbake::{HeightMap, Heights};
 
 /// Rows of bits, whatever the height type.
@@ -46,7 +46,7 @@ fn bands_hold_the_map_and_its_halo() {
                     let what = format!("{} rows of {}, {edge}, bands of {band_rows}", height, map.depth());
                     let source = || Box::new(MemorySource::new(map.clone())) as Box<dyn RowSource>;
                     let mut in_memory = MapBands::new(map, edge, band_rows);
-                    let mut read = BandReader::new(source(), edge, band_rows);
+                    let mut read = BandReader::new(source(), edge, RowOrder::FromTop, band_rows);
                     for bands in [&mut in_memory as &mut dyn HeightBands, &mut read] {
                         let mut first = 0;
                         while let Some(band) = bands.next().expect("rows") {
@@ -64,6 +64,31 @@ fn bands_hold_the_map_and_its_halo() {
                     }
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn the_first_row_can_come_last() {
+    for height in [2, 3, 4, 5, 8, 9, 31] {
+        let map = map_u16(3, height, |x, y| (10 * y + x) as u16);
+        let rows = rows_of_map(&map);
+        for band_rows in [1, 2, 3, 4, 8, 30, 31, 1000] {
+            let source = Box::new(MemorySource::new(map.clone()));
+            let order = RowOrder::FirstRowLast { height };
+            let mut bands = BandReader::new(source, texbake::Edge::Wrap, order, band_rows);
+            let (mut bodies, mut starts) = (Rows::new(), Vec::new());
+            while let Some(band) = bands.next().expect("rows") {
+                let first = (1 + bodies.len()) % height;
+                let [above, body, below] = rows_of_band(&band);
+                assert_eq!(above[0], rows[(first + height - 1) % height], "above row {first} of {height}");
+                assert_eq!(below[0], rows[(first + body.len()) % height], "below from row {first} of {height}");
+                starts.push(first);
+                bodies.extend(body);
+            }
+            let rotated: Rows = rows[1..].iter().chain(&rows[..1]).cloned().collect();
+            assert_eq!(bodies, rotated, "{height} rows, bands of {band_rows}");
+            assert_eq!(starts.last(), Some(&0), "{height} rows, bands of {band_rows}");
         }
     }
 }

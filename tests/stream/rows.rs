@@ -75,6 +75,9 @@ impl RowSource for MemorySource {
 #[derive(Default)]
 struct Taken {
     bytes: Vec<u8>,
+    written: usize,
+    /// The first row of every call.
+    firsts: Vec<usize>,
     finished: bool,
 }
 
@@ -82,16 +85,28 @@ struct MemorySink {
     taken: Arc<Mutex<Taken>>,
     /// Bytes from which on the sink is full.
     capacity: usize,
+    row_bytes: usize,
+    first_row_last: bool,
 }
 
 impl RowSink for MemorySink {
-    fn write(&mut self, rows: CodesRef<'_>) -> Result<()> {
+    fn takes_first_row_last(&self) -> bool {
+        self.first_row_last
+    }
+
+    fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
         let mut taken = self.taken.lock().expect("no panic");
         assert!(!rows.bytes().is_empty() && !taken.finished, "rows before the end");
-        if taken.bytes.len() + rows.bytes().len() > self.capacity {
+        if taken.written + rows.bytes().len() > self.capacity {
             return Err(broken("normals"));
         }
-        taken.bytes.extend_from_slice(rows.bytes());
+        let place = first * self.row_bytes..first * self.row_bytes + rows.bytes().len();
+        if taken.bytes.len() < place.end {
+            taken.bytes.resize(place.end, 0xa5);
+        }
+        taken.bytes[place].copy_from_slice(rows.bytes());
+        taken.written += rows.bytes().len();
+        taken.firsts.push(first);
         Ok(())
     }
 
@@ -107,12 +122,20 @@ struct Stream<'a> {
     options: NormalOptions,
     broken_row: Option<usize>,
     capacity: usize,
+    first_row_last: bool,
     monitor: Monitor,
 }
 
 impl<'a> Stream<'a> {
     fn new(map: &'a HeightMap, options: NormalOptions) -> Self {
-        Self { map, options, broken_row: None, capacity: usize::MAX, monitor: Monitor::default() }
+        Self {
+            map,
+            options,
+            broken_row: None,
+            capacity: usize::MAX,
+            first_row_last: false,
+            monitor: Monitor::default(),
+        }
     }
 
     fn bake(&self, baker: &Baker) -> (Result<texbake::Ran>, Taken) {
@@ -124,7 +147,11 @@ impl<'a> Stream<'a> {
         let create = |size: Size| {
             assert_eq!(size, self.map.size());
             *taken.lock().expect("no panic") = Taken::default();
-            Ok(Box::new(MemorySink { taken: taken.clone(), capacity: self.capacity }) as Box<dyn RowSink>)
+            let format = self.options.format;
+            let row_bytes = size.width() * format.channels.count() * format.depth.bytes();
+            let Self { capacity, first_row_last, .. } = *self;
+            let sink = MemorySink { taken: taken.clone(), capacity, row_bytes, first_row_last };
+            Ok(Box::new(sink) as Box<dyn RowSink>)
         };
         let ran = baker.normal_rows(&open, &create, &self.options, &self.monitor);
         let taken = std::mem::take(&mut *taken.lock().expect("no panic"));
@@ -145,13 +172,16 @@ fn rows_give_the_bytes_of_maps() {
         for (map, format) in maps.iter().zip([UNORM8, two_channels, FLOAT16].into_iter().cycle()) {
             for edge in EDGES {
                 let options = NormalOptions { edges: Edges { x: Edge::Wrap, y: edge }, ..options("24", format) };
-                for Subject { name, baker } in every_baker() {
-                    let stream = Stream::new(map, options);
+                let ways = every_baker().iter().flat_map(|subject| [false, true].map(|way| (subject, way)));
+                for (Subject { name, baker }, first_row_last) in ways {
+                    let stream = Stream { first_row_last, ..Stream::new(map, options) };
                     let (ran, taken) = stream.bake(baker);
                     let ran = ran.unwrap_or_else(|error| panic!("{name}: {error}"));
                     let whole = baker.normal(map, &options).expect("a bake");
                     assert!(taken.bytes == whole.codes().bytes(), "{name}, {height} rows, {}, {edge}", map.depth());
                     assert!(taken.finished, "{name}");
+                    let late = first_row_last && edge == Edge::Wrap && height > 1;
+                    assert_eq!(taken.firsts[0], usize::from(late), "{name}: {:?}", taken.firsts);
                     assert_eq!(stream.monitor.texels(), map.size().texels() as u64, "{name}");
                     assert_eq!((ran.size, ran.depth, ran.fallback), (map.size(), map.depth(), None), "{name}");
                     assert_eq!((ran.scale.x, ran.scale.y, ran.scale.q, ran.scale.exact), (24, 24, 1, true), "{name}");
@@ -188,7 +218,8 @@ fn a_torn_source_is_the_error_and_nothing_is_finished() {
     for Subject { name, baker } in every_baker() {
         for (edge, broken_row) in EDGES.into_iter().flat_map(|edge| [0, 1, 250, 499].map(|row| (edge, row))) {
             let options = NormalOptions { edges: Edges::both(edge), ..options("1", UNORM8) };
-            let stream = Stream { broken_row: Some(broken_row), ..Stream::new(&map, options) };
+            let first_row_last = broken_row % 2 == 1;
+            let stream = Stream { broken_row: Some(broken_row), first_row_last, ..Stream::new(&map, options) };
             let (ran, taken) = stream.bake(baker);
             let error = ran.expect_err("a row cannot be read").to_string();
             assert_eq!(error, "heights: it tore", "{name}, {edge}, row {broken_row}");

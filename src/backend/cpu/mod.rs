@@ -33,7 +33,7 @@ pub(crate) struct Cpu {
 }
 
 /// Bytes of heights and codes in a band: enough work for many threads, little beside an image.
-const BAND_BYTES: usize = 8 << 20;
+const BAND_BYTES: usize = 1 << 20;
 
 /// Texels in a strip: milliseconds would leave threads idle at the end of a band, microseconds would be overhead.
 const STRIP_TEXELS: usize = 1 << 16;

@@ -140,7 +140,12 @@ impl ExrEncoder {
 }
 
 impl RowEncoder for ExrEncoder {
-    fn write(&mut self, rows: CodesRef<'_>) -> Result<()> {
+    /// Blocks of several rows are compressed one after the other.
+    fn takes_first_row_last(&self) -> bool {
+        false
+    }
+
+    fn write(&mut self, _: usize, rows: CodesRef<'_>) -> Result<()> {
         self.pending.extend_from_slice(rows.bytes());
         let (rows, lines) = (self.pending.len() / self.row_bytes(), COMPRESSION.scan_lines_per_block());
         self.write_blocks(rows / lines * lines)

@@ -2,6 +2,7 @@
 
 mod read;
 mod write;
+mod zlib;
 
 pub(super) use read::open;
 pub(super) use write::create;

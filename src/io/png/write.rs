@@ -1,28 +1,44 @@
 //! PNG normal maps.
+//!
+//! The first row of a map that wraps can only be baked when the last one is known, and waiting for it would keep
+//! decoding and encoding from overlapping. So the first row is stored, not deflated: its bytes have a known number,
+//! room is left for them, and they are filled in whenever the row arrives. Row 1 is filtered without looking up. The
+//! file is the same whenever row 0 comes, and hardly larger.
 
+use super::zlib::{IdatStream, first_idat, stored_bytes};
 use crate::error::{Error, Result};
 use crate::io::replace::{Output, Replacement};
 use crate::io::sink::{FileSink, RowEncoder, cannot_hold};
 use crate::map::{Channels, CodesRef, Depth, Encoding, NormalFormat, Size};
 use crate::stream::RowSink;
-use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, StreamWriter};
-use std::io::Write;
+use png::chunk::IDAT;
+use png::{BitDepth, ColorType, Encoder, EncodingError};
+use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// How hard deflate works: `Fast` filters the rows adaptively and uses a deflate made for PNG: several times the speed
-/// of deflate's level 1 at about a tenth more bytes.
-const COMPRESSION: Compression = Compression::Fast;
+/// Where the first IDAT chunk begins: behind the signature and IHDR.
+const FIRST_IDAT: u64 = 8 + 25;
 
-/// Compressed bytes that go to the file at once, as one IDAT chunk.
-const CHUNK_BYTES: usize = 256 << 10;
+/// The first byte of a filtered row (PNG specification, section 9).
+const NONE: u8 = 0;
+const SUB: u8 = 1;
+const PAETH: u8 = 4;
 
 /// Streams rows through deflate.
 struct PngEncoder {
     path: PathBuf,
-    rows: StreamWriter<'static, Output>,
+    stream: IdatStream,
+    /// The same file, to fill the room that was left.
+    file: Output,
     channels: Channels,
-    /// Rows in the file's channels and byte order.
-    bytes: Vec<u8>,
+    depth: Depth,
+    /// Bytes of a row and of a texel in the file.
+    row_bytes: usize,
+    texel_bytes: usize,
+    first_row: Vec<u8>,
+    previous: Vec<u8>,
+    current: Vec<u8>,
+    filtered: Vec<u8>,
 }
 
 /// Creates a PNG with 8 or 16 bits, RGB; xy maps leave blue 0, since PNG's only two-channel type means transparency.
@@ -31,18 +47,12 @@ pub(crate) fn create(path: &Path, size: Size, format: NormalFormat) -> Result<Bo
         (Encoding::Unorm | Encoding::Biased, Depth::Bits8) => BitDepth::Eight,
         (Encoding::Unorm | Encoding::Biased, Depth::Bits16) => BitDepth::Sixteen,
         (Encoding::Snorm, _) => {
-            return Err(cannot_hold(
-                path,
-                format,
-                "unorm or biased in PNG, which has no signed numbers; TIFF has them",
-            ));
+            let remedy = "unorm or biased in PNG, which has no signed numbers; TIFF has them";
+            return Err(cannot_hold(path, format, remedy));
         }
         _ => {
-            return Err(cannot_hold(
-                path,
-                format,
-                "unorm or biased with 8 or 16 bits in PNG; EXR and TIFF hold floats",
-            ));
+            let remedy = "unorm or biased with 8 or 16 bits in PNG; EXR and TIFF hold floats";
+            return Err(cannot_hold(path, format, remedy));
         }
     };
     let replacement = Replacement::create(path)?;
@@ -50,44 +60,114 @@ pub(crate) fn create(path: &Path, size: Size, format: NormalFormat) -> Result<Bo
     let mut encoder = Encoder::new(replacement.output()?, width, height);
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(depth);
-    encoder.set_compression(COMPRESSION);
-    let writer = encoder.write_header().map_err(reason(path))?;
-    let rows = writer.into_stream_writer_with_size(CHUNK_BYTES).map_err(reason(path))?;
-    let encoder = PngEncoder { path: path.into(), rows, channels: format.channels, bytes: Vec::new() };
+    let mut writer = encoder.write_header().map_err(reason(path))?;
+    let texel_bytes = 3 * format.depth.bytes();
+    let row_bytes = size.width() * texel_bytes;
+    writer.write_chunk(IDAT, &vec![0; 2 + stored_bytes(1 + row_bytes)]).map_err(reason(path))?;
+    let encoder = PngEncoder {
+        path: path.into(),
+        stream: IdatStream::new(writer),
+        file: replacement.output()?,
+        channels: format.channels,
+        depth: format.depth,
+        row_bytes,
+        texel_bytes,
+        first_row: Vec::new(),
+        previous: Vec::new(),
+        current: vec![0; row_bytes],
+        filtered: Vec::with_capacity(1 + row_bytes),
+    };
     Ok(FileSink::boxed(encoder, replacement, size, format))
 }
 
 impl RowEncoder for PngEncoder {
-    fn write(&mut self, rows: CodesRef<'_>) -> Result<()> {
-        let bytes = match (rows, self.channels) {
-            (CodesRef::U8(codes), Channels::Xyz) => codes,
-            (CodesRef::U8(codes), Channels::Xy) => {
-                self.bytes.clear();
-                self.bytes.extend(codes.chunks_exact(2).flat_map(|xy| [xy[0], xy[1], 0]));
-                &self.bytes
+    fn takes_first_row_last(&self) -> bool {
+        true
+    }
+
+    fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
+        let row_codes = self.row_bytes / self.texel_bytes * self.channels.count();
+        let bytes = rows.bytes().chunks_exact(row_codes * self.depth.bytes());
+        for (row, codes) in (first..).zip(bytes) {
+            self.samples(codes);
+            match row {
+                0 => self.first_row = [&[NONE], self.current.as_slice()].concat(),
+                1 => self.deflate(SUB),
+                _ => self.deflate(PAETH),
             }
-            (CodesRef::U16(codes), Channels::Xyz) => {
-                self.bytes.resize(codes.len() * 2, 0);
-                let places = self.bytes.chunks_exact_mut(2);
-                places.zip(codes).for_each(|(place, code)| place.copy_from_slice(&code.to_be_bytes()));
-                &self.bytes
-            }
-            (CodesRef::U16(codes), Channels::Xy) => {
-                self.bytes.clear();
-                self.bytes.extend(codes.chunks_exact(2).flat_map(|xy| {
-                    let ([a, b], [c, d]) = (xy[0].to_be_bytes(), xy[1].to_be_bytes());
-                    [a, b, c, d, 0, 0]
-                }));
-                &self.bytes
-            }
-            (CodesRef::F16(_) | CodesRef::F32(_), _) => unreachable!("the depth was checked when the file was created"),
-        };
-        self.rows.write_all(bytes).map_err(Error::io(&self.path))
+            std::mem::swap(&mut self.previous, &mut self.current);
+            self.current.resize(self.row_bytes, 0);
+        }
+        Ok(())
     }
 
     fn finish(self: Box<Self>) -> Result<()> {
-        self.rows.finish().map_err(reason(&self.path))
+        let Self { path, stream, mut file, first_row, .. } = *self;
+        stream.finish(&first_row).map_err(reason(&path))?;
+        let mut fill = || {
+            file.seek(SeekFrom::Start(FIRST_IDAT))?;
+            file.write_all(&first_idat(&first_row))
+        };
+        fill().map_err(Error::io(&path))
     }
+}
+
+impl PngEncoder {
+    /// Brings a row of codes into the file's channels and byte order.
+    fn samples(&mut self, codes: &[u8]) {
+        let texels = self.current.chunks_exact_mut(self.texel_bytes);
+        match (self.depth, self.channels) {
+            (Depth::Bits8, Channels::Xyz) => self.current.copy_from_slice(codes),
+            (Depth::Bits8, Channels::Xy) => {
+                texels.zip(codes.chunks_exact(2)).for_each(|(rgb, xy)| rgb.copy_from_slice(&[xy[0], xy[1], 0]));
+            }
+            (_, channels) => {
+                let big_endian = |code: &[u8]| u16::from_ne_bytes([code[0], code[1]]).to_be_bytes();
+                for (rgb, codes) in texels.zip(codes.chunks_exact(2 * channels.count())) {
+                    rgb[4..].fill(0);
+                    let samples = rgb.chunks_exact_mut(2).zip(codes.chunks_exact(2));
+                    samples.for_each(|(sample, code)| sample.copy_from_slice(&big_endian(code)));
+                }
+            }
+        }
+    }
+
+    /// Filters the current row and deflates it.
+    fn deflate(&mut self, filter: u8) {
+        self.filtered.clear();
+        self.filtered.push(filter);
+        match filter {
+            SUB => sub(&self.current, self.texel_bytes, &mut self.filtered),
+            _ => paeth(&self.current, &self.previous, self.texel_bytes, &mut self.filtered),
+        }
+        self.stream.write(&self.filtered);
+    }
+}
+
+/// Each byte less the one a texel to its left.
+fn sub(row: &[u8], texel: usize, filtered: &mut Vec<u8>) {
+    filtered.extend_from_slice(&row[..texel]);
+    filtered.extend(row[texel..].iter().zip(row).map(|(here, left)| here.wrapping_sub(*left)));
+}
+
+/// Each byte less the one of left, up and upper left that is nearest to left + up - upper left.
+fn paeth(row: &[u8], above: &[u8], texel: usize, filtered: &mut Vec<u8>) {
+    filtered.extend(row[..texel].iter().zip(above).map(|(here, up)| here.wrapping_sub(*up)));
+    let around = row.iter().zip(&above[texel..]).zip(above);
+    filtered.extend(
+        row[texel..]
+            .iter()
+            .zip(around)
+            .map(|(here, ((left, up), upper_left))| here.wrapping_sub(nearest(*left, *up, *upper_left))),
+    );
+}
+
+/// The Paeth predictor, in an order that vectorises.
+fn nearest(left: u8, up: u8, upper_left: u8) -> u8 {
+    let [a, b, c] = [left, up, upper_left].map(i16::from);
+    let [from_left, from_up, from_upper_left] = [(b - c).abs(), (a - c).abs(), (a + b - 2 * c).abs()];
+    let of_columns = if from_up <= from_upper_left { up } else { upper_left };
+    if from_left <= from_up && from_left <= from_upper_left { left } else { of_columns }
 }
 
 /// The encoder's reason, with the file.

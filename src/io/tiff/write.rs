@@ -52,8 +52,14 @@ enum Values {
 }
 
 impl RowEncoder for TiffEncoder {
-    fn write(&mut self, rows: CodesRef<'_>) -> Result<()> {
-        self.output.write_all(rows.bytes()).map_err(Error::io(&self.path))
+    fn takes_first_row_last(&self) -> bool {
+        true
+    }
+
+    fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
+        let place = SeekFrom::Start(self.row_place(first));
+        let written = self.output.seek(place).and_then(|_| self.output.write_all(rows.bytes()));
+        written.map_err(Error::io(&self.path))
     }
 
     fn finish(mut self: Box<Self>) -> Result<()> {
@@ -65,6 +71,11 @@ impl RowEncoder for TiffEncoder {
 impl TiffEncoder {
     fn row_bytes(&self) -> usize {
         self.size.width() * self.format.channels.count() * self.format.depth.bytes()
+    }
+
+    /// Where a row begins; all rows stand one after the other behind the header.
+    fn row_place(&self, row: usize) -> u64 {
+        self.header_bytes() + row as u64 * self.row_bytes() as u64
     }
 
     fn rows_per_strip(&self) -> usize {
@@ -98,7 +109,7 @@ impl TiffEncoder {
         let (width, height) = (self.size.width() as u64, self.size.height() as u64);
         let (row_bytes, rows_per_strip) = (self.row_bytes() as u64, self.rows_per_strip() as u64);
         let strips = height.div_ceil(rows_per_strip);
-        let offsets = (0..strips).map(|strip| self.header_bytes() + strip * rows_per_strip * row_bytes);
+        let offsets = (0..strips).map(|strip| self.row_place(strip as usize * self.rows_per_strip()));
         let counts = (0..strips).map(|strip| rows_per_strip.min(height - strip * rows_per_strip) * row_bytes);
         let sample_format = match self.format.encoding {
             Encoding::Unorm | Encoding::Biased => 1,
@@ -133,7 +144,7 @@ impl TiffEncoder {
 
     /// Writes the directory behind the rows, and its offset into the header.
     fn directory(&mut self) -> std::io::Result<()> {
-        let end = self.output.stream_position()?;
+        let end = self.output.seek(SeekFrom::Start(self.row_place(self.size.height())))?;
         // A directory begins on a word boundary.
         let start = end.next_multiple_of(8);
         self.output.write_all(&vec![0; (start - end) as usize])?;
@@ -199,7 +210,7 @@ mod tests {
         encoder.header(0).unwrap();
         let mut sink = FileSink::boxed(encoder, replacement, size, format);
         let codes: Vec<u16> = (0..18).map(|i| i * 3000).collect();
-        sink.write(CodesRef::U16(&codes)).unwrap();
+        sink.write(0, CodesRef::U16(&codes)).unwrap();
         sink.finish().unwrap();
 
         assert_eq!(std::fs::read(&path).unwrap()[2..4], 43u16.to_ne_bytes());
