@@ -47,7 +47,7 @@ pub struct AxisScale {
 /// Numerators and denominators stay below 2^24, so that every product of an exact bake fits 128 bits (DESIGN 3.1).
 const GREATEST_PART: i128 = (1 << 24) - 1;
 
-/// Fractions beyond this could overflow a comparison of two products; no realistic input comes near.
+/// Twice a part of a fraction times a small part fits 128 bits; only numbers of 16 digits and more come near.
 const GREATEST_FRACTION: i128 = 1 << 100;
 
 impl Default for Scale {
@@ -106,35 +106,41 @@ fn texels_high(depth: Rational, extent: Rational, count: usize) -> Result<Fracti
 impl AxisScale {
     fn nearest(x: Fraction, y: Fraction) -> Result<Self> {
         for fraction in [x, y] {
-            if fraction.n.abs() / fraction.d > GREATEST_PART {
-                let value = fraction.n as f64 / fraction.d as f64;
-                return Err(Error::parameter("scale", value, "between -16777215 and 16777215 texels"));
+            if fraction.n.abs() > GREATEST_PART * fraction.d {
+                return Err(too_steep(fraction.n as f64 / fraction.d as f64));
             }
         }
         if x == y {
             let nearest = x.nearest_small();
-            return Ok(Self::of(nearest.n, nearest.n, nearest.d, nearest == x));
+            return Self::of(nearest.n, nearest.n, nearest.d, nearest == x);
         }
         let q = x.d / gcd(x.d as u128, y.d as u128) as i128;
         match q.checked_mul(y.d).filter(|q| *q <= GREATEST_PART) {
             Some(q) if x.times(q).abs() <= GREATEST_PART && y.times(q).abs() <= GREATEST_PART => {
-                Ok(Self::of(x.times(q), y.times(q), q, true))
+                Self::of(x.times(q), y.times(q), q, true)
             }
-            _ => Ok(Self::nearest_with_common_denominator(x, y)),
+            _ => Self::nearest_with_common_denominator(x, y),
         }
     }
 
-    /// Both axes over the largest denominator that keeps the numerators small.
-    fn nearest_with_common_denominator(x: Fraction, y: Fraction) -> Self {
-        let steepest = if x.n.abs() * y.d > y.n.abs() * x.d { x } else { y };
-        let q = (GREATEST_PART * steepest.d / steepest.n.abs().max(1)).clamp(1, GREATEST_PART);
+    /// Both axes over the largest denominator that keeps both numerators small: each is off by at most 1/(2q).
+    fn nearest_with_common_denominator(x: Fraction, y: Fraction) -> Result<Self> {
+        let largest = |axis: Fraction| GREATEST_PART * axis.d / axis.n.abs().max(1);
+        let q = largest(x).min(largest(y)).min(GREATEST_PART);
         Self::of(x.times(q), y.times(q), q, false)
     }
 
-    fn of(x: i128, y: i128, q: i128, exact: bool) -> Self {
-        debug_assert!(x.abs() <= GREATEST_PART && y.abs() <= GREATEST_PART && (1..=GREATEST_PART).contains(&q));
-        Self { x: x as i32, y: y as i32, q: q as u32, exact }
+    fn of(x: i128, y: i128, q: i128, exact: bool) -> Result<Self> {
+        let small = |part: i128| part.abs() <= GREATEST_PART;
+        if !(small(x) && small(y) && small(q) && q > 0) {
+            return Err(too_steep(format_args!("{x}/{q},{y}/{q}")));
+        }
+        Ok(Self { x: x as i32, y: y as i32, q: q as u32, exact })
     }
+}
+
+fn too_steep(scale: impl ToString) -> Error {
+    Error::parameter("scale", scale, "between -16777215 and 16777215 texels")
 }
 
 impl fmt::Display for Scale {

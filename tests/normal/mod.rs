@@ -5,4 +5,5 @@ mod edges;
 mod eight_bits;
 mod float_heights;
 mod options;
+mod scales;
 mod sixteen_bits;
