@@ -7,7 +7,7 @@ use crate::exact::AxisScale;
 use crate::map::{CodesMut, Edge, HeightDepth, HeightMap, NormalMap, Size};
 use crate::ops::normal::{NormalOptions, NormalPlan};
 use crate::stream::{
-    BandReader, CodeSink, CodeWriter, MapBands, MapSink, Monitor, RowOrder, RowSink, RowSource, read_map,
+    BandReader, CodeSink, CodeWriter, MapBands, MapSink, Monitor, RowOrder, RowSink, RowSource, read_map_watched,
 };
 use std::sync::Arc;
 
@@ -156,12 +156,12 @@ impl Baker {
             let plan = NormalPlan::new(options, source.size(), source.depth())?;
             let sink = create(plan.size)?;
             let order = match (plan.edges.y, plan.size.height()) {
-                (Edge::Wrap, height) if height > 1 && sink.takes_first_row_last() => RowOrder::FirstRowLast { height },
+                (Edge::Wrap, height) if height > 1 && sink.takes_first_row_last() => RowOrder::FirstRowLast,
                 _ => RowOrder::FromTop,
             };
-            let writer = CodeWriter::new(sink, plan.format.depth, plan.row_codes(), order);
+            let writer = CodeWriter::new(sink, plan.size, plan.format, order)?;
             let mut sink = Monitored { sink: writer, width: plan.size.width(), monitor };
-            stream(backend, &plan, source, order, &mut sink)?;
+            stream(backend, &plan, source, order, monitor, &mut sink)?;
             sink.sink.finish()?;
             Ok((backend.name(), plan))
         })?;
@@ -190,14 +190,15 @@ fn stream(
     let band_rows = backend.band_rows(plan);
     let needs_last_row_first = plan.edges.y == Edge::Wrap && order == RowOrder::FromTop;
     if needs_last_row_first && plan.size.texels() * plan.depth.bytes() <= HELD_BYTES {
-        let map = read_map(source.as_mut())?;
+        let map = read_map_watched(source.as_mut(), monitor)?;
         return backend.normal(plan, &mut MapBands::new(&map, plan.edges.y, band_rows), sink);
     }
-    backend.normal(plan, &mut BandReader::new(source, plan.edges.y, order, band_rows), sink)
+    backend.normal(plan, &mut BandReader::new(source, plan.edges.y, order, band_rows)?, sink)
 }
 
 /// Counts what passes to a sink.
 struct Monitored<'a> {
+    monitor: &Monitor,
     sink: CodeWriter,
     width: usize,
     monitor: &'a Monitor,

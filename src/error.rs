@@ -84,6 +84,13 @@ pub enum Error {
         reason: String,
     },
 
+    /// The system refused to start a thread.
+    #[error("the system starts no more threads: {reason}; run fewer bakes at a time, or raise the limit (ulimit -u)")]
+    Threads {
+        /// The system's own reason.
+        reason: String,
+    },
+
     /// The bake was stopped from outside.
     #[error("stopped before it was complete; no file was left under its final name")]
     Cancelled,
@@ -116,6 +123,11 @@ impl Error {
     /// A file that cannot be used, why, and what to do about it.
     pub(crate) fn file(path: impl Into<PathBuf>, reason: impl ToString, remedy: impl Into<String>) -> Self {
         Self::File { path: path.into(), reason: reason.to_string(), remedy: remedy.into() }
+    }
+
+    /// Threads that the system refused.
+    pub(crate) fn threads(reason: impl ToString) -> Self {
+        Self::Threads { reason: reason.to_string() }
     }
 
     /// A GPU that cannot do the job.

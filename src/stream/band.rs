@@ -1,13 +1,13 @@
 //! A band: some rows of heights, with the row above and the row below.
 
 use crate::error::Result;
-use crate::map::{Edge, HeightDepth, Heights};
+use crate::map::{Edge, Heights};
 
 /// Rows of one height type with a halo of one row on either side.
 ///
 /// At the top and bottom of a map the halo rows are what the edge mode says, so a backend knows no vertical edge.
 #[derive(Debug, Clone, Copy)]
-pub struct Band<'a, T> {
+pub(crate) struct Band<'a, T> {
     /// Heights in a row.
     pub width: usize,
     /// The row above the first.
@@ -20,7 +20,7 @@ pub struct Band<'a, T> {
 
 /// A band of any height type.
 #[derive(Debug, Clone, Copy)]
-pub enum HeightBand<'a> {
+pub(crate) enum HeightBand<'a> {
     /// 8-bit codes.
     U8(Band<'a, u8>),
     /// 16-bit codes.
@@ -30,7 +30,7 @@ pub enum HeightBand<'a> {
 }
 
 /// A map's bands, from the top, without gap or overlap.
-pub trait HeightBands {
+pub(crate) trait HeightBands {
     /// The next band; `None` after the last.
     ///
     /// # Errors
@@ -64,7 +64,7 @@ impl<'a, T: Copy> Band<'a, T> {
     }
 
     /// The 3 x 3 heights around column `x` of row `row`, rows from the top, each from the left.
-    pub(crate) fn neighbours(&self, edge: Edge, x: usize, row: usize) -> [[T; 3]; 3] {
+    pub fn neighbours(&self, edge: Edge, x: usize, row: usize) -> [[T; 3]; 3] {
         let columns = [-1, 0, 1].map(|step| edge.resolve(x as isize + step, self.width));
         [-1, 0, 1].map(|step| {
             let row = self.row(row as isize + step);
@@ -89,15 +89,6 @@ impl HeightBand<'_> {
             Self::U8(band) => Self::U8(band.part(first, count)),
             Self::U16(band) => Self::U16(band.part(first, count)),
             Self::F32(band) => Self::F32(band.part(first, count)),
-        }
-    }
-
-    /// How a height is stored.
-    pub fn depth(&self) -> HeightDepth {
-        match self {
-            Self::U8(_) => HeightDepth::U8,
-            Self::U16(_) => HeightDepth::U16,
-            Self::F32(_) => HeightDepth::F32,
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::map::{CodesMut, Edge, HeightMap};
 
 /// The bands of a height map in memory.
 #[derive(Debug)]
-pub struct MapBands<'a> {
+pub(crate) struct MapBands<'a> {
     map: &'a HeightMap,
     edge: Edge,
     band_rows: usize,
@@ -34,7 +34,7 @@ impl HeightBands for MapBands<'_> {
 
 /// A map's codes in memory, filled from the top.
 #[derive(Debug)]
-pub struct MapSink<'a> {
+pub(crate) struct MapSink<'a> {
     codes: CodesMut<'a>,
     row_codes: usize,
     next_row: usize,

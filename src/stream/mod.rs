@@ -1,8 +1,7 @@
-//! A bake is a stream of row bands.
+//! The two ends of a bake from rows to rows: [`RowSource`] and [`RowSink`], and the [`Monitor`] that watches it.
 //!
-//! Rows come from a [`RowSource`], are cut into bands with a halo of one row ([`HeightBands`]), go through a backend,
-//! and leave as rows of codes to a [`CodeSink`], in a [`RowOrder`]. Reading, baking and writing overlap, and no stage holds more than a
-//! few bands.
+//! Between them rows are cut into bands with a halo of one row and go through a backend. Reading, baking and writing
+//! overlap, and no stage holds more than a few bands.
 
 mod band;
 mod channel;
@@ -10,11 +9,16 @@ mod memory;
 mod monitor;
 mod order;
 mod reader;
+#[cfg(test)]
+mod tests;
+mod thread;
 mod writer;
 
-pub use band::{Band, HeightBand, HeightBands};
-pub use memory::{MapBands, MapSink};
+pub(crate) use band::{Band, HeightBand, HeightBands};
+pub(crate) use memory::{MapBands, MapSink};
 pub use monitor::Monitor;
-pub use order::RowOrder;
-pub use reader::{BandReader, RowSource, read_map};
-pub use writer::{CodeSink, CodeWriter, RowSink};
+pub(crate) use order::RowOrder;
+pub(crate) use reader::{BandReader, read_map_watched};
+pub use reader::{RowSource, read_map};
+pub use writer::RowSink;
+pub(crate) use writer::{CodeSink, CodeWriter};

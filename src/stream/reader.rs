@@ -2,10 +2,12 @@
 
 use super::band::{Band, HeightBand, HeightBands};
 use super::channel::{Recycling, recycling};
+use super::monitor::Monitor;
 use super::order::RowOrder;
+use super::thread;
 use crate::error::Result;
 use crate::map::{Edge, Grid, HeightDepth, HeightMap, HeightsMut, Size};
-use std::thread::JoinHandle;
+use std::thread::{Builder, JoinHandle};
 
 /// A height map that is read from the top.
 pub trait RowSource: Send {
@@ -32,9 +34,9 @@ pub trait RowSource: Send {
 const BUFFERS: usize = 3;
 
 /// The bands of a [`RowSource`]; a thread reads ahead.
-#[derive(Debug)]
-pub struct BandReader {
-    bands: Recycling<BandBuffer>,
+pub(crate) struct BandReader {
+    /// `None` once nothing more is wanted.
+    bands: Option<Recycling<BandBuffer>>,
     current: Option<BandBuffer>,
     thread: Option<JoinHandle<Result<()>>>,
 }
@@ -42,9 +44,11 @@ pub struct BandReader {
 impl BandReader {
     /// Reads `source` in bands of `band_rows` rows; `edge` says what lies above the first row and below the last.
     ///
-    /// # Panics
-    /// If `band_rows` is 0, or row 0 shall come last of a map that does not wrap or has no other row.
-    pub fn new(source: Box<dyn RowSource>, edge: Edge, order: RowOrder, band_rows: usize) -> Self {
+    /// Row 0 comes last only of a map that wraps and has another row.
+    ///
+    /// # Errors
+    /// [`crate::Error::Threads`].
+    pub fn new(source: Box<dyn RowSource>, edge: Edge, order: RowOrder, band_rows: usize) -> Result<Self> {
         assert!(band_rows > 0, "a band has rows");
         assert!(order == RowOrder::FromTop || edge == Edge::Wrap && source.size().height() > 1, "row 0 cannot be last");
         let (bands, mut filled) = recycling(BUFFERS);
@@ -59,23 +63,34 @@ impl BandReader {
             }
             Ok(())
         };
-        let thread = std::thread::Builder::new().name("texbake read".into()).spawn(read_all);
-        Self { bands, current: None, thread: Some(thread.expect("the system starts a thread")) }
+        let thread = thread::start(Builder::new().name("texbake read".into()), read_all)?;
+        Ok(Self { bands: Some(bands), current: None, thread: Some(thread) })
     }
 }
 
 impl HeightBands for BandReader {
     fn next(&mut self) -> Result<Option<HeightBand<'_>>> {
+        let Some(bands) = &self.bands else { return Ok(None) };
         if let Some(used) = self.current.take() {
-            self.bands.give_back(used);
+            bands.give_back(used);
         }
-        self.current = self.bands.receive();
+        self.current = bands.receive();
         if self.current.is_none()
             && let Some(thread) = self.thread.take()
         {
-            thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+            thread::join(thread)?;
         }
         Ok(self.current.as_ref().map(BandBuffer::band))
+    }
+}
+
+impl Drop for BandReader {
+    /// Once it is gone the source is closed: a thread that still reads is waited for.
+    fn drop(&mut self) {
+        self.bands = None;
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
     }
 }
 
@@ -103,9 +118,10 @@ impl BandCutter {
         if edge == Edge::Wrap && order == RowOrder::FromTop {
             let mut row = BandBuffer::new(source.size().width(), source.depth(), 1);
             source.read_last_row(row.rows_mut(0, 1))?;
+            row.check_finite(0, 1, source.size().height() - 1)?;
             last_row = row.slot(0).to_vec();
         }
-        let (next_row, read, done) = (order.first_row(), 0, false);
+        let (next_row, read, done) = (order.row(0, source.size().height()), 0, false);
         Ok(Self { source, edge, order, next_row, read, carried: Vec::new(), first_rows: Vec::new(), last_row, done })
     }
 
@@ -141,7 +157,9 @@ impl BandCutter {
 
         let to = (end + 1).min(height);
         if self.read < to {
-            self.source.read(buffer.rows_mut(self.read + 1 - first, to - self.read))?;
+            let (slot, count) = (self.read + 1 - first, to - self.read);
+            self.source.read(buffer.rows_mut(slot, count))?;
+            buffer.check_finite(slot, count, self.read)?;
         }
         if self.read == 0 {
             let slots = 1 - first..2 - first + usize::from(to > 1);
@@ -223,6 +241,12 @@ impl BandBuffer {
         }
     }
 
+    /// Fails on a float that has no slope, whatever the source let pass; slot `first` holds row `row` of the map.
+    fn check_finite(&mut self, first: usize, count: usize, row: usize) -> Result<()> {
+        let width = self.width;
+        self.rows_mut(first, count).as_ref().check_finite(width, row)
+    }
+
     fn band(&self) -> HeightBand<'_> {
         fn cut<T: bytemuck::Pod>(buffer: &BandBuffer) -> Band<'_, T> {
             let bytes = &buffer.bytes()[..(buffer.body_rows + 2) * buffer.row_bytes()];
@@ -243,23 +267,34 @@ impl BandBuffer {
 /// # Errors
 /// As [`RowSource::read`].
 pub fn read_map(source: &mut dyn RowSource) -> Result<HeightMap> {
-    let size = source.size();
-    let (width, height) = (size.width(), size.height());
+    read_map_watched(source, &Monitor::default())
+}
+
+/// Bytes of a map that are read between two looks at the monitor.
+const PIECE_BYTES: usize = 1 << 20;
+
+/// Reads a whole map, unless the monitor ends it.
+///
+/// # Errors
+/// As [`RowSource::read`], and [`crate::Error::Cancelled`].
+pub(crate) fn read_map_watched(source: &mut dyn RowSource, monitor: &Monitor) -> Result<HeightMap> {
+    fn read<T: Copy + Default>(
+        source: &mut dyn RowSource,
+        monitor: &Monitor,
+        rows: fn(&mut [T]) -> HeightsMut<'_>,
+    ) -> Result<Grid<T>> {
+        let size = source.size();
+        let piece_rows = (PIECE_BYTES / (size.width() * size_of::<T>())).max(1);
+        let mut heights = vec![T::default(); size.texels()];
+        for piece in heights.chunks_mut(piece_rows * size.width()) {
+            monitor.check()?;
+            source.read(rows(piece))?;
+        }
+        Grid::new(size.width(), size.height(), heights)
+    }
     match source.depth() {
-        HeightDepth::U8 => {
-            let mut heights = vec![0; size.texels()];
-            source.read(HeightsMut::U8(&mut heights))?;
-            Ok(Grid::new(width, height, heights)?.into())
-        }
-        HeightDepth::U16 => {
-            let mut heights = vec![0; size.texels()];
-            source.read(HeightsMut::U16(&mut heights))?;
-            Ok(Grid::new(width, height, heights)?.into())
-        }
-        HeightDepth::F32 => {
-            let mut heights = vec![0.0; size.texels()];
-            source.read(HeightsMut::F32(&mut heights))?;
-            Grid::new(width, height, heights)?.try_into()
-        }
+        HeightDepth::U8 => Ok(read(source, monitor, |rows| HeightsMut::U8(rows))?.into()),
+        HeightDepth::U16 => Ok(read(source, monitor, |rows| HeightsMut::U16(rows))?.into()),
+        HeightDepth::F32 => read(source, monitor, |rows| HeightsMut::F32(rows))?.try_into(),
     }
 }

@@ -2,12 +2,13 @@
 
 use super::channel::{Filling, recycling};
 use super::order::RowOrder;
+use super::thread;
 use crate::error::{Error, Result};
-use crate::map::{Codes, CodesMut, CodesRef, Depth};
-use std::thread::JoinHandle;
+use crate::map::{Codes, CodesMut, CodesRef, Depth, NormalFormat, Size};
+use std::thread::{Builder, JoinHandle};
 
 /// Takes the codes of a map from a backend, from the top.
-pub trait CodeSink {
+pub(crate) trait CodeSink {
     /// Lets `fill` write the codes of the next `rows` rows.
     ///
     /// # Errors
@@ -15,9 +16,11 @@ pub trait CodeSink {
     fn write(&mut self, rows: usize, fill: &mut dyn FnMut(&mut CodesMut<'_>) -> Result<()>) -> Result<()>;
 }
 
-/// A map that is written row by row, in a [`RowOrder`].
+/// A map that is written row by row.
+///
+/// Rows come from the top, each once; row 0 may come last if the sink lets it.
 pub trait RowSink: Send {
-    /// Whether row 0 may come after all others ([`RowOrder::FirstRowLast`]).
+    /// Whether row 0 may come after all others: then a map that wraps from bottom to top is read once.
     fn takes_first_row_last(&self) -> bool {
         false
     }
@@ -39,7 +42,7 @@ pub trait RowSink: Send {
 const BUFFERS: usize = 3;
 
 /// Writes to a [`RowSink`] on a thread while the backend computes the next rows.
-pub struct CodeWriter {
+pub(crate) struct CodeWriter {
     depth: Depth,
     row_codes: usize,
     filling: Option<Filling<Codes>>,
@@ -47,22 +50,24 @@ pub struct CodeWriter {
 }
 
 impl CodeWriter {
-    /// Writes rows of `row_codes` codes of `depth`, which come in this order, to `sink`.
-    pub fn new(mut sink: Box<dyn RowSink>, depth: Depth, row_codes: usize, order: RowOrder) -> Self {
+    /// Writes the rows of a map, which come in this order, to `sink`.
+    ///
+    /// # Errors
+    /// [`Error::Threads`].
+    pub fn new(mut sink: Box<dyn RowSink>, size: Size, format: NormalFormat, order: RowOrder) -> Result<Self> {
+        let row_codes = size.width() * format.channels.count();
         let (full, filling) = recycling::<Codes>(BUFFERS);
         let write_all = move || {
-            let mut first = order.first_row();
+            let mut travelled = 0;
             while let Some(codes) = full.receive() {
-                sink.write(first, codes.as_ref())?;
-                let last = first + codes.as_ref().len() / row_codes - 1;
-                first = order.row_after(last);
+                sink.write(order.row(travelled, size.height()), codes.as_ref())?;
+                travelled += codes.as_ref().len() / row_codes;
                 full.give_back(codes);
             }
             Ok(sink)
         };
-        let thread = std::thread::Builder::new().name("texbake write".into()).spawn(write_all);
-        let thread = Some(thread.expect("the system starts a thread"));
-        Self { depth, row_codes, filling: Some(filling), thread }
+        let thread = Some(thread::start(Builder::new().name("texbake write".into()), write_all)?);
+        Ok(Self { depth: format.depth, row_codes, filling: Some(filling), thread })
     }
 
     /// Waits for the last rows and completes the file.
@@ -76,7 +81,7 @@ impl CodeWriter {
     fn join(&mut self) -> Result<Box<dyn RowSink>> {
         self.filling = None;
         let thread = self.thread.take().ok_or(Error::Cancelled)?;
-        thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        thread::join(thread)
     }
 }
 
@@ -100,8 +105,11 @@ impl CodeSink for CodeWriter {
         };
         let mut codes =
             buffer.filter(|codes| codes.as_ref().len() == count).unwrap_or_else(|| Codes::zeroed(self.depth, count));
-        fill(&mut codes.as_mut())?;
-        filling.send(codes);
-        Ok(())
+        let filled = fill(&mut codes.as_mut());
+        match filled {
+            Ok(()) => filling.send(codes),
+            Err(_) => filling.put_back(codes),
+        }
+        filled
     }
 }

@@ -10,4 +10,4 @@ mod slopes;
 
 pub use integer::{image, ties};
 pub use real::{RealNormal, real_normals};
-pub use slopes::{neighbour, slope_sums};
+pub use slopes::slope_sums;

@@ -4,7 +4,7 @@ use num_bigint::BigInt;
 use texbake::{Edge, Edges, Filter, HeightMap, Heights, Scale, Size};
 
 /// The texel that stands for texel `i` of an axis of `n`, one step beyond the border at most.
-pub fn neighbour(edge: Edge, i: i64, n: i64) -> i64 {
+fn neighbour(edge: Edge, i: i64, n: i64) -> i64 {
     match edge {
         _ if 0 <= i && i < n => i,
         _ if n == 1 => 0,

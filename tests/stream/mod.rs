@@ -1,4 +1,3 @@
 //! Rows in, rows out: banding changes no byte, and what fails on the way is reported.
 
-mod bands;
 mod rows;

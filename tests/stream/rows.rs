@@ -253,6 +253,129 @@ fn a_cancelled_bake_ends_and_nothing_is_finished() {
     }
 }
 
+/// A source of floats of which one is NaN, and which does not say so.
+struct Careless {
+    source: MemorySource,
+    hole: [usize; 2],
+}
+
+impl Careless {
+    fn punch(&self, first_row: usize, rows: HeightsMut<'_>) {
+        let (HeightsMut::F32(heights), [x, y]) = (rows, self.hole) else { panic!("floats") };
+        let width = self.size().width();
+        if (first_row..first_row + heights.len() / width).contains(&y) {
+            heights[(y - first_row) * width + x] = f32::NAN;
+        }
+    }
+}
+
+impl RowSource for Careless {
+    fn size(&self) -> Size {
+        self.source.size()
+    }
+
+    fn depth(&self) -> HeightDepth {
+        self.source.depth()
+    }
+
+    fn read(&mut self, rows: HeightsMut<'_>) -> Result<()> {
+        let first_row = self.source.next_row;
+        let HeightsMut::F32(heights) = rows else { panic!("floats") };
+        self.source.read(HeightsMut::F32(heights))?;
+        self.punch(first_row, HeightsMut::F32(heights));
+        Ok(())
+    }
+
+    fn read_last_row(&mut self, row: HeightsMut<'_>) -> Result<()> {
+        let HeightsMut::F32(heights) = row else { panic!("floats") };
+        self.source.read_last_row(HeightsMut::F32(heights))?;
+        self.punch(self.size().height() - 1, HeightsMut::F32(heights));
+        Ok(())
+    }
+}
+
+#[test]
+fn a_height_that_is_not_finite_reaches_no_backend() {
+    // Held in memory, read twice, read once: the three ways of a map that wraps, and the only one of others.
+    let tall = (64 << 20) / (4 * 4099) + 2;
+    let ways = [
+        (Edge::Wrap, false, [16, 500]),
+        (Edge::Wrap, false, [4099, tall]),
+        (Edge::Wrap, true, [16, 500]),
+        (Edge::Clamp, false, [16, 500]),
+    ];
+    for (edge, first_row_last, [width, height]) in ways {
+        let map = map_f32(width, height, |x, y| (x + y) as f32);
+        for row in [0, 1, height / 2, height - 1] {
+            let open = || {
+                let source = MemorySource::new(map.clone());
+                Ok(Box::new(Careless { source, hole: [3, row] }) as Box<dyn RowSource>)
+            };
+            let taken = Arc::new(Mutex::new(Taken::default()));
+            let create = |_: Size| {
+                let sink =
+                    MemorySink { taken: taken.clone(), capacity: usize::MAX, row_bytes: 3 * width, first_row_last };
+                Ok(Box::new(sink) as Box<dyn RowSink>)
+            };
+            let options = NormalOptions { edges: Edges::both(edge), ..options("1", UNORM8) };
+            let ran = Baker::cpu().normal_rows(&open, &create, &options, &Monitor::default());
+            let found = matches!(ran, Err(Error::NotFinite { x: 3, y, .. }) if y == row);
+            assert!(found, "{edge}, {width} x {height}, row {row}: {ran:?}");
+            assert!(!taken.lock().expect("no panic").finished, "{edge}, row {row}");
+        }
+    }
+}
+
+/// A source whose monitor is told to stop when row `row` is read.
+struct Stopping {
+    source: MemorySource,
+    monitor: Arc<Monitor>,
+    row: usize,
+}
+
+impl RowSource for Stopping {
+    fn size(&self) -> Size {
+        self.source.size()
+    }
+
+    fn depth(&self) -> HeightDepth {
+        self.source.depth()
+    }
+
+    fn read(&mut self, rows: HeightsMut<'_>) -> Result<()> {
+        assert!(!self.monitor.is_cancelled(), "row {} was asked for after the stop", self.source.next_row);
+        self.source.read(rows)?;
+        if self.source.next_row > self.row {
+            self.monitor.cancel();
+        }
+        Ok(())
+    }
+
+    fn read_last_row(&mut self, row: HeightsMut<'_>) -> Result<()> {
+        self.source.read_last_row(row)
+    }
+}
+
+/// A map that wraps into a sink that takes rows from the top is read whole before it is baked.
+#[test]
+fn a_map_that_is_held_is_read_no_further_after_a_stop() {
+    let map = map_u16(2048, 2048, |x, y| (x ^ y) as u16);
+    let monitor = Arc::new(Monitor::default());
+    let open = || {
+        let source = MemorySource::new(map.clone());
+        Ok(Box::new(Stopping { source, monitor: monitor.clone(), row: 700 }) as Box<dyn RowSource>)
+    };
+    let taken = Arc::new(Mutex::new(Taken::default()));
+    let create = |_: Size| {
+        let sink =
+            MemorySink { taken: taken.clone(), capacity: usize::MAX, row_bytes: 3 * 2048, first_row_last: false };
+        Ok(Box::new(sink) as Box<dyn RowSink>)
+    };
+    let ran = Baker::cpu().normal_rows(&open, &create, &options("1", UNORM8), &monitor);
+    assert!(matches!(ran, Err(Error::Cancelled)), "{ran:?}");
+    assert_eq!(taken.lock().expect("no panic").written, 0);
+}
+
 #[test]
 fn refused_options_open_no_sink() {
     let map = map_u8(4, 4, |_, _| 0);
