@@ -68,7 +68,15 @@ impl Baker {
 
     /// All cores, vectorised.
     pub fn cpu() -> Self {
-        Self::only(Cpu::new(None))
+        Self::only(Cpu::shared())
+    }
+
+    /// This many threads of its own, vectorised.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] if `threads` is 0; [`crate::Error::Threads`] if the system refuses them.
+    pub fn cpu_threads(threads: usize) -> Result<Self> {
+        Ok(Self::only(Cpu::with_threads(threads)?))
     }
 
     /// One GPU and nothing else: the adapter whose description contains `adapter`, or the best one.

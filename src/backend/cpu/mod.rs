@@ -18,7 +18,7 @@ mod tests;
 pub(crate) use reference::Reference;
 
 use crate::backend::Backend;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::map::CodesMut;
 use crate::ops::normal::NormalPlan;
 use crate::stream::{CodeSink, HeightBand, HeightBands};
@@ -36,14 +36,27 @@ pub(crate) struct Cpu {
 const BAND_BYTES: usize = 1 << 20;
 
 /// Texels in a strip: milliseconds would leave threads idle at the end of a band, microseconds would be overhead.
+///
+/// Strips are whole rows, so fewer rows than threads leave some idle. A map so wide and so low is no texture, and
+/// columns would cut each row of codes, which interleaves them.
 const STRIP_TEXELS: usize = 1 << 16;
 
 impl Cpu {
-    /// Bakes on `threads` threads of its own, or on those that all of the process share.
-    pub fn new(threads: Option<usize>) -> Self {
-        let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        // Where the system refuses more threads, the shared ones do the work.
-        Self { own_threads: threads.and_then(|threads| pool(threads).ok()) }
+    /// Bakes on the threads that all of the process share.
+    pub fn shared() -> Self {
+        Self { own_threads: None }
+    }
+
+    /// Bakes on `threads` threads of its own.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there are none; [`Error::Threads`] if the system refuses them.
+    pub fn with_threads(threads: usize) -> Result<Self> {
+        if threads == 0 {
+            return Err(Error::parameter("threads", threads, "at least 1"));
+        }
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(Error::threads)?;
+        Ok(Self { own_threads: Some(pool) })
     }
 
     fn threads(&self) -> usize {

@@ -86,7 +86,7 @@ fn difference(map: &HeightMap, options: &NormalOptions, got: &Codes, expected: &
 
 fn assert_same_bytes(map: &HeightMap, options: &NormalOptions) {
     let expected = baked(&Reference, map, options, map.size().height());
-    let got = baked(&Cpu::new(None), map, options, 7);
+    let got = baked(&Cpu::shared(), map, options, 7);
     assert_eq!(got.as_ref().len(), expected.as_ref().len());
     assert_eq!(difference(map, options, &got, &expected), None);
 }
@@ -153,7 +153,7 @@ fn a_plane_on_a_tie() {
     let roof = Grid::from_fn(600, 4, |x, _| 2 * x as u16).unwrap().into();
     let edges = Edges { x: Edge::Mirror, y: Edge::Clamp };
     let options = NormalOptions { scale: scale("196605/8"), edges, ..NormalOptions::default() };
-    let codes = baked(&Cpu::new(None), &roof, &options, 4);
+    let codes = baked(&Cpu::shared(), &roof, &options, 4);
     let CodesRef::U8(codes) = codes.as_ref() else { panic!("8 bits were asked for") };
     for (texel, code) in codes.chunks(3).enumerate() {
         // At the mirrored borders the slope along the rows is 0.
@@ -233,9 +233,9 @@ fn neither_threads_nor_bands_change_a_byte() {
     for map in maps([4099, 61], |_, _| random.next() as u16) {
         for precision in [Precision::Exact, Precision::Fast] {
             let options = NormalOptions { scale: scale("24"), precision, ..NormalOptions::default() };
-            let expected = baked(&Cpu::new(Some(1)), &map, &options, 61);
+            let expected = baked(&Cpu::with_threads(1).unwrap(), &map, &options, 61);
             for (threads, band_rows) in [(1, 1), (2, 61), (2, 16), (3, 61), (3, 5)] {
-                let got = baked(&Cpu::new(Some(threads)), &map, &options, band_rows);
+                let got = baked(&Cpu::with_threads(threads).unwrap(), &map, &options, band_rows);
                 assert_eq!(difference(&map, &options, &got, &expected), None, "{threads} threads, {band_rows} rows");
             }
         }
@@ -252,7 +252,7 @@ fn fast_is_next_to_exact() {
             for text in ["1", "24", "0.01"] {
                 let exact = NormalOptions { scale: scale(text), format, ..NormalOptions::default() };
                 let fast = NormalOptions { precision: Precision::Fast, ..exact };
-                let [exact, fast] = [exact, fast].map(|options| baked(&Cpu::new(None), &map, &options, 64));
+                let [exact, fast] = [exact, fast].map(|options| baked(&Cpu::shared(), &map, &options, 64));
                 let greatest = match (fast.as_ref(), exact.as_ref()) {
                     (CodesRef::U8(a), CodesRef::U8(b)) => greatest_step(a, b, |a, b| a.wrapping_sub(b) as i8 as f64),
                     (CodesRef::U16(a), CodesRef::U16(b)) => greatest_step(a, b, |a, b| a.wrapping_sub(b) as i16 as f64),
@@ -277,7 +277,7 @@ fn greatest_step<T: Copy>(a: &[T], b: &[T], step: impl Fn(T, T) -> f64) -> f64 {
 
 #[test]
 fn the_name_says_what_runs() {
-    let name = Cpu::new(Some(2)).name();
+    let name = Cpu::with_threads(2).unwrap().name();
     let sets = ["avx512", "avx2", "sse2", "neon", "scalar"];
     assert!(sets.iter().any(|set| name == format!("cpu, 2 threads, {set}")), "{name}");
 }
@@ -287,9 +287,9 @@ fn bands_hold_some_rows_for_every_thread() {
     let rows = |width, height| {
         let plan =
             NormalPlan::new(&NormalOptions::default(), Size::new(width, height).unwrap(), crate::map::HeightDepth::U16);
-        Cpu::new(Some(3)).band_rows(&plan.unwrap())
+        Cpu::with_threads(3).unwrap().band_rows(&plan.unwrap())
     };
-    assert_eq!(rows(4096, 4096), 409); // 8 MiB over 4096 (2 + 3) bytes
+    assert_eq!(rows(4096, 4096), 51); // 1 MiB over 4096 (2 + 3) bytes
     assert_eq!(rows(1 << 24, 4096), 12);
     assert_eq!(rows(64, 64), 64);
 }
