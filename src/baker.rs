@@ -112,6 +112,8 @@ impl Baker {
 
     /// Bakes a height map into a normal map.
     ///
+    /// [`Baker::normal_into`] also tells how it ran: a GPU of [`Baker::auto`] that fails leaves the job to the CPU.
+    ///
     /// # Errors
     /// [`crate::Error::Parameter`] if an option is out of range; [`crate::Error::Device`] if a GPU without a
     /// fallback fails.
@@ -122,28 +124,25 @@ impl Baker {
         Ok(map)
     }
 
-    /// Bakes a height map into the caller's memory: codes texel by texel, in rows from the top.
+    /// Bakes a height map into the caller's memory: codes texel by texel, in rows from the top. Tells how it ran.
     ///
     /// # Errors
     /// As [`Baker::normal`], and [`crate::Error::Parameter`] if `codes` is not of the format's depth and the map's
     /// size.
-    pub fn normal_into(&self, heights: &HeightMap, options: &NormalOptions, codes: CodesMut<'_>) -> Result<()> {
+    pub fn normal_into(&self, heights: &HeightMap, options: &NormalOptions, codes: CodesMut<'_>) -> Result<Ran> {
         let plan = NormalPlan::new(options, heights.size(), heights.depth())?;
-        let wanted = plan.row_codes() * plan.size.height();
-        if codes.depth() != plan.format.depth || codes.len() != wanted {
-            let given = format!("{} codes of {} bits", codes.len(), codes.depth());
-            return Err(Error::parameter("codes", given, format!("{wanted} codes of {} bits", plan.format.depth)));
-        }
+        plan.format.check_codes(plan.size, codes.len(), codes.depth())?;
         self.normal_of_plan(heights, &plan, codes)
     }
 
-    fn normal_of_plan(&self, heights: &HeightMap, plan: &NormalPlan, mut codes: CodesMut<'_>) -> Result<()> {
+    fn normal_of_plan(&self, heights: &HeightMap, plan: &NormalPlan, mut codes: CodesMut<'_>) -> Result<Ran> {
         let all = 0..codes.len();
-        self.run(|backend| {
+        let (backend, fallback) = self.run(|backend| {
             let mut bands = MapBands::new(heights, plan.edges.y, backend.map_band_rows(plan));
-            backend.normal(plan, &mut bands, &mut MapSink::new(codes.slice(all.clone()), plan.row_codes()))
+            backend.normal(plan, &mut bands, &mut MapSink::new(codes.slice(all.clone()), plan.row_codes()))?;
+            Ok(backend.name())
         })?;
-        Ok(())
+        Ok(Ran::new(backend, fallback, plan))
     }
 
     /// Bakes rows from `open` into rows for `create` while they are read and written.
@@ -173,7 +172,7 @@ impl Baker {
             sink.sink.finish()?;
             Ok((backend.name(), plan))
         })?;
-        Ok(Ran { backend, fallback, size: plan.size, depth: plan.depth, scale: plan.scale })
+        Ok(Ran::new(backend, fallback, &plan))
     }
 
     /// Runs a job, and runs it again on the fallback if the backend's device fails; then it says why.
@@ -187,12 +186,19 @@ impl Baker {
     }
 }
 
+impl Ran {
+    fn new(backend: String, fallback: Option<String>, plan: &NormalPlan) -> Self {
+        Self { backend, fallback, size: plan.size, depth: plan.depth, scale: plan.scale }
+    }
+}
+
 /// Sends the rows of a source through a backend into a sink.
 fn stream(
     backend: &dyn Backend,
     plan: &NormalPlan,
     mut source: Box<dyn RowSource>,
     order: RowOrder,
+    monitor: &Monitor,
     sink: &mut dyn CodeSink,
 ) -> Result<()> {
     let band_rows = backend.band_rows(plan);
@@ -206,7 +212,6 @@ fn stream(
 
 /// Counts what passes to a sink.
 struct Monitored<'a> {
-    monitor: &Monitor,
     sink: CodeWriter,
     width: usize,
     monitor: &'a Monitor,
@@ -260,10 +265,16 @@ mod tests {
             baker.normal(&pyramid(), &options).unwrap(),
             Baker::reference().normal(&pyramid(), &options).unwrap()
         );
-        let ((), why) = baker
-            .run(|backend| if backend.name() == "failing" { Err(Error::device("a", "b")) } else { Ok(()) })
-            .unwrap();
-        assert_eq!(why.as_deref(), Some("a: b"));
+        let mut codes = vec![0; 9 * 7 * 3];
+        let ran = baker.normal_into(&pyramid(), &options, CodesMut::U8(&mut codes)).unwrap();
+        assert_eq!((ran.backend, ran.fallback), (Reference.name(), Some("failing: out of memory".into())));
+    }
+
+    #[test]
+    fn threads_are_counted_from_one() {
+        assert!(Baker::cpu_threads(1).unwrap().name().starts_with("cpu, 1 thread, "));
+        let Err(error) = Baker::cpu_threads(0) else { panic!("a bake on no thread") };
+        assert_eq!(error.to_string(), "threads is 0: it must be at least 1");
     }
 
     #[test]

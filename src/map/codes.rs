@@ -86,6 +86,16 @@ impl<'a> CodesRef<'a> {
         }
     }
 
+    /// How a code is stored.
+    pub fn depth(&self) -> Depth {
+        match self {
+            Self::U8(_) => Depth::Bits8,
+            Self::U16(_) => Depth::Bits16,
+            Self::F16(_) => Depth::Float16,
+            Self::F32(_) => Depth::Float32,
+        }
+    }
+
     /// The codes as bytes in this machine's order.
     pub fn bytes(&self) -> &'a [u8] {
         match self {

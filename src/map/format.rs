@@ -1,5 +1,6 @@
 //! What the numbers of a map mean.
 
+use super::Size;
 use crate::error::{Error, Result};
 use crate::names::named;
 use std::fmt;
@@ -167,6 +168,16 @@ impl NormalFormat {
             _ => "8 or 16 for the encodings unorm, snorm and biased",
         };
         Err(Error::parameter("bits", self.depth, range))
+    }
+
+    /// Fails if `count` codes of `depth` are not a map of this size and format.
+    pub(crate) fn check_codes(&self, size: Size, count: usize, depth: Depth) -> Result<()> {
+        let wanted = size.texels() * self.channels.count();
+        if count == wanted && depth == self.depth {
+            return Ok(());
+        }
+        let given = format!("{count} codes of {depth} bits");
+        Err(Error::parameter("codes", given, format!("{wanted} codes of {} bits", self.depth)))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Normal maps with their format attached.
 
 use super::{Codes, CodesRef, NormalFormat, Size};
+use crate::error::Result;
 
 /// A tangent-space normal map and what its codes mean.
 ///
@@ -13,6 +14,25 @@ pub struct NormalMap {
 }
 
 impl NormalMap {
+    /// A map of these codes, given texel by texel, row by row.
+    ///
+    /// ```
+    /// use texbake::{Codes, NormalFormat, NormalMap, Size};
+    ///
+    /// let flat = NormalMap::new(Size::new(2, 1)?, NormalFormat::default(), Codes::U8(vec![128, 128, 255, 128, 128, 255]))?;
+    /// # assert_eq!(flat.size().texels(), 2);
+    /// # Ok::<(), texbake::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] if the format's encoding and depth do not go together, or `codes` is not of its
+    /// depth and `size`.
+    pub fn new(size: Size, format: NormalFormat, codes: Codes) -> Result<Self> {
+        format.check()?;
+        format.check_codes(size, codes.as_ref().len(), codes.as_ref().depth())?;
+        Ok(Self { size, format, codes })
+    }
+
     /// Room for a map, for a backend to fill.
     pub(crate) fn zeroed(size: Size, format: NormalFormat) -> Self {
         let codes = Codes::zeroed(format.depth, size.texels() * format.channels.count());
@@ -37,5 +57,27 @@ impl NormalMap {
     /// The codes, to fill.
     pub(crate) fn codes_mut(&mut self) -> super::CodesMut<'_> {
         self.codes.as_mut()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{Channels, Depth, Encoding};
+
+    #[test]
+    fn codes_must_be_what_the_format_says() {
+        let xy = NormalFormat { encoding: Encoding::Snorm, channels: Channels::Xy, ..NormalFormat::default() };
+        let map = |format, codes| NormalMap::new(Size::new(2, 1).unwrap(), format, codes);
+        let made = map(xy, Codes::U8(vec![0, 127, 129, 0])).unwrap();
+        assert_eq!((made.format(), made.codes()), (xy, CodesRef::U8(&[0, 127, 129, 0])));
+        let refused = |format, codes| map(format, codes).unwrap_err().to_string();
+        let short = refused(xy, Codes::U8(vec![0; 3]));
+        assert_eq!(short, "codes is 3 codes of 8 bits: it must be 4 codes of 8 bits");
+        let deep = refused(xy, Codes::U16(vec![0; 4]));
+        assert_eq!(deep, "codes is 4 codes of 16 bits: it must be 4 codes of 8 bits");
+        let mixed = NormalFormat { depth: Depth::Float32, ..xy };
+        let mixed = refused(mixed, Codes::F32(vec![0.0; 4]));
+        assert_eq!(mixed, "bits is 32f: it must be 8 or 16 for the encodings unorm, snorm and biased");
     }
 }
