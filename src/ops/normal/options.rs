@@ -41,7 +41,12 @@ pub enum Precision {
     /// The same bytes on every backend; for integer heights the correctly rounded ones.
     #[default]
     Exact,
-    /// Native floats: a code may be its neighbour.
+    /// Native floats. Measured by `cargo bench --bench accuracy`, with directions off by 1e-5 degrees at most:
+    ///
+    /// - 8 bits: 2.5e-6 of the codes differ, each by one.
+    /// - 16 bits: 1e-1 of the codes differ, each by one.
+    /// - 16f: a code next to the exact one, where that lies close to the middle between two.
+    /// - 32f: most codes differ, in their last four bits; two devices need not agree.
     Fast,
 }
 

@@ -101,7 +101,8 @@ impl NormalPlan {
         Ok(Self { size, depth, stencil, edges, slope, format, precision, scale })
     }
 
-    /// The slope constants in floats, whatever the heights are: what `fast` computes with.
+    /// The slope constants in floats, whatever the heights are: what `fast` computes with on a GPU.
+    #[cfg(feature = "gpu")]
     pub fn float_slope(&self) -> FloatSlope {
         match self.slope {
             Slope::Float(slope) => slope,
