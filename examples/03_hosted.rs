@@ -2,7 +2,7 @@
 //!
 //!     cargo run --release --example 03_hosted
 
-use texbake::gpu::{Codes, Heights, Hosted, wgpu};
+use texbake::gpu::{CodeTarget, HeightSource, Hosted, wgpu};
 use texbake::{Edge, Edges, HeightDepth, NormalOptions, Scale, Size};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let bake = texbake.normal(size, HeightDepth::F32, &options)?;
 
     let mut encoder = device.create_command_encoder(&Default::default());
-    bake.encode(&mut encoder, Heights::Texture(&heights), Codes::Texture(&normals))?;
+    bake.encode(&mut encoder, HeightSource::Texture(&heights), CodeTarget::Texture(&normals))?;
     queue.submit([encoder.finish()]);
     println!("recorded and submitted a bake of {size} texels on {}", adapter.get_info().name);
     Ok(())

@@ -2,7 +2,7 @@
 //
 // In:  heights, raw words: four u8 or two u16 codes to a word, the first lowest, or one f32; rows begin on words.
 // Out: codes, raw words: CODES_PER_TEXEL codes of CODE_BITS for each texel, the first lowest; rows padded to four texels.
-//      One word for each row beyond the codes says that the row was computed: NONCE + its index.
+//      One word for each row, beyond the codes, says by which dispatch the row was computed.
 // An invocation computes four neighbouring texels of one row; no texel is written twice, and nothing is atomic.
 //
 // CPU twin: src/ops/normal/reference.rs. Source: FGED2 eq. 7.41 to 7.43, listing 7.5.
@@ -70,7 +70,7 @@ fn normal(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     store_codes(params.codes + row * params.codes_row_words + id.x * words_per_invocation(), texels);
     if (MARKED && x + TEXELS >= params.width) {
-        codes[params.marks + row] = params.nonce + row;
+        codes[params.marks + row] = params.nonce;
     }
 }
 

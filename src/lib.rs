@@ -57,7 +57,7 @@ mod exact;
 pub mod gpu {
     //! Bakes on a wgpu device of the caller's.
 
-    pub use crate::backend::gpu::{Codes, Heights, Hosted, NormalBake};
+    pub use crate::backend::gpu::{CodeTarget, HeightSource, Hosted, NormalBake};
     /// The version that [`Hosted`] works with.
     pub use wgpu;
 }

@@ -1,8 +1,11 @@
 //! Bakes on a device of the host's: the same bytes from buffers and textures, in the host's own encoder.
 
+#[cfg(feature = "cli")]
+mod faults;
+
 use crate::support::{FORMATS, Image, Random, every_baker, map_f32, map_u8, map_u16, options};
 use std::sync::OnceLock;
-use texbake::gpu::{Codes, Heights, Hosted, wgpu};
+use texbake::gpu::{CodeTarget, HeightSource, Hosted, wgpu};
 use texbake::{
     Baker, Channels, CodesRef, Depth, Edge, Edges, Encoding, HeightDepth, HeightMap, NormalFormat, NormalMap,
     NormalOptions, Size,
@@ -143,7 +146,8 @@ fn buffers_get_the_reference_bytes() {
                 host.write(&heights, &height_bytes(&map), row, bake.heights_row_bytes());
 
                 let mut encoder = host.device.create_command_encoder(&Default::default());
-                bake.encode(&mut encoder, Heights::Buffer(&heights), Codes::Buffer(&codes)).unwrap();
+                bake.encode(&mut encoder, HeightSource::Buffer(heights.slice(..)), CodeTarget::Buffer(codes.slice(..)))
+                    .unwrap();
                 host.queue.submit([encoder.finish()]);
 
                 let expected = Baker::reference().normal(&map, &options).unwrap();
@@ -182,7 +186,7 @@ fn textures_get_the_reference_codes_and_an_opaque_alpha() {
 
             let bake = hosted.normal(size, map.depth(), &options).unwrap();
             let mut encoder = host.device.create_command_encoder(&Default::default());
-            bake.encode(&mut encoder, Heights::Texture(&heights), Codes::Texture(&codes)).unwrap();
+            bake.encode(&mut encoder, HeightSource::Texture(&heights), CodeTarget::Texture(&codes)).unwrap();
             host.queue.submit([encoder.finish()]);
 
             let expected = Baker::reference().normal(&map, &options).unwrap();
@@ -209,16 +213,28 @@ fn resources_that_do_not_fit_are_errors_that_say_so() {
     let wide = host.texture(Size::new(9, 8).unwrap(), TextureFormat::R16Unorm, copies);
     let unbound = host.buffer(1024, BufferUsages::COPY_DST);
     for (heights, codes, message) in [
-        (Heights::Buffer(&small), Codes::Buffer(&good), "heights buffer is 64 bytes: it must be at least 128 bytes"),
-        (Heights::Buffer(&good), Codes::Buffer(&small), "codes buffer is 64 bytes: it must be at least 192 bytes"),
-        (Heights::Texture(&wide), Codes::Buffer(&good), "heights texture is 9 x 8 x 1: it must be 8 x 8 x 1 texels"),
         (
-            Heights::Buffer(&good),
-            Codes::Texture(&srgb),
+            HeightSource::Buffer(small.slice(..)),
+            CodeTarget::Buffer(good.slice(..)),
+            "heights buffer is 64 bytes: it must be at least 128 bytes",
+        ),
+        (
+            HeightSource::Buffer(good.slice(..)),
+            CodeTarget::Buffer(small.slice(..)),
+            "codes buffer is 64 bytes: it must be at least 192 bytes",
+        ),
+        (
+            HeightSource::Texture(&wide),
+            CodeTarget::Buffer(good.slice(..)),
+            "heights texture is 9 x 8 x 1: it must be 8 x 8 x 1 texels",
+        ),
+        (
+            HeightSource::Buffer(good.slice(..)),
+            CodeTarget::Texture(&srgb),
             "codes texture is Rgba8UnormSrgb: it must be Rgba8Unorm or Rgba8Uint",
         ),
-        (Heights::Buffer(&good), Codes::Texture(&unusable), "usable as"),
-        (Heights::Buffer(&unbound), Codes::Buffer(&good), "STORAGE"),
+        (HeightSource::Buffer(good.slice(..)), CodeTarget::Texture(&unusable), "usable as"),
+        (HeightSource::Buffer(unbound.slice(..)), CodeTarget::Buffer(good.slice(..)), "STORAGE"),
     ] {
         let mut encoder = host.device.create_command_encoder(&Default::default());
         let error = bake.encode(&mut encoder, heights, codes).unwrap_err().to_string();

@@ -43,6 +43,11 @@ pub(super) fn is_real(info: &AdapterInfo) -> bool {
     matches!(info.device_type, DeviceType::DiscreteGpu | DeviceType::IntegratedGpu | DeviceType::VirtualGpu)
 }
 
+/// Whether `auto` would take an adapter.
+pub(super) fn is_candidate(info: &AdapterInfo) -> bool {
+    is_real(info) && info.backend != wgpu::Backend::Gl
+}
+
 /// `vulkan:llvmpipe (LLVM 15.0.6, 256 bits)`.
 pub(super) fn describe(info: &AdapterInfo) -> String {
     format!("{}:{}", api(info), info.name)

@@ -5,12 +5,15 @@ use super::kernel::KernelSource;
 use super::normal::NormalKernel;
 use super::transfer::Slot;
 use crate::error::{Error, Result};
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::any::Any;
+use std::collections::{HashMap, HashSet};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::time::Duration;
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, ComputePipeline,
-    ComputePipelineDescriptor, DeviceDescriptor, PipelineCompilationOptions, PipelineLayoutDescriptor, ShaderModule,
-    ShaderModuleDescriptor, ShaderSource,
+    ComputePipelineDescriptor, DeviceDescriptor, ErrorFilter, PipelineCompilationOptions, PipelineLayoutDescriptor,
+    ShaderModule, ShaderModuleDescriptor, ShaderSource,
 };
 
 /// A device that bakes.
@@ -22,8 +25,10 @@ pub(crate) struct Device {
     modules: Mutex<HashMap<KernelSource, ShaderModule>>,
     pipelines: Mutex<HashMap<NormalKernel, ComputePipeline>>,
     idle: Mutex<Vec<Slot>>,
-    /// The first thing that went wrong since it was last asked for.
-    trouble: Arc<Mutex<Option<String>>>,
+    /// Kernels whose bytes were compared with the reference's.
+    tested: Mutex<HashSet<NormalKernel>>,
+    /// Why the device cannot be used any more.
+    lost: Arc<OnceLock<String>>,
 }
 
 impl Device {
@@ -44,7 +49,7 @@ impl Device {
         let opened = pollster::block_on(adapter.request_device(&descriptor));
         let (device, queue) = opened.map_err(|error| Error::device(&name, error))?;
         let this = Self::new(name, device, queue);
-        this.report_trouble();
+        this.watch();
         Ok(this)
     }
 
@@ -59,31 +64,67 @@ impl Device {
             modules: Mutex::default(),
             pipelines: Mutex::default(),
             idle: Mutex::default(),
-            trouble: Arc::default(),
+            tested: Mutex::default(),
+            lost: Arc::default(),
         }
     }
 
     /// Without handlers, wgpu panics on errors that nobody asks for and keeps silent about a lost device.
-    fn report_trouble(&self) {
-        let first = |trouble: &Arc<Mutex<Option<String>>>, text: String| {
-            lock(trouble).get_or_insert(text);
-        };
-        let trouble = self.trouble.clone();
-        self.device.on_uncaptured_error(Arc::new(move |error| first(&trouble, error.to_string())));
-        let trouble = self.trouble.clone();
+    fn watch(&self) {
+        let lost = self.lost.clone();
+        self.device.on_uncaptured_error(Arc::new(move |error| {
+            let _ = lost.set(error.to_string());
+        }));
+        let lost = self.lost.clone();
         self.device.set_device_lost_callback(move |reason, message| {
-            if reason != wgpu::DeviceLostReason::Destroyed || !message.is_empty() {
-                first(&trouble, format!("the device was lost: {message}"));
-            }
+            let _ = lost.set(format!("the device was lost: {reason:?} {message}").trim_end().into());
         });
     }
 
-    /// Fails if anything went wrong since the last call.
+    /// Fails if the device was lost, now or during an earlier job.
     pub fn check(&self) -> Result<()> {
-        match lock(&self.trouble).take() {
+        match self.lost.get() {
             None => Ok(()),
-            Some(trouble) => Err(self.error(trouble)),
+            Some(reason) => Err(self.error(reason)),
         }
+    }
+
+    /// Gives the device up: every later job is spared the wait for it.
+    pub fn give_up(&self, reason: impl ToString) -> Error {
+        // The first reason is the cause of the others.
+        let _ = self.lost.set(reason.to_string());
+        self.error(self.lost.get().map_or("it was lost", String::as_str))
+    }
+
+    /// Runs calls into wgpu, and returns whatever is wrong with them as an error: what it would report elsewhere, to
+    /// whom it may concern, and its panics, which a lost device can cause (gfx-rs/wgpu: poll).
+    pub fn guarded<T>(&self, work: impl FnOnce() -> Result<T>) -> Result<T> {
+        self.check()?;
+        let scopes = [ErrorFilter::Internal, ErrorFilter::OutOfMemory, ErrorFilter::Validation]
+            .map(|filter| self.device.push_error_scope(filter));
+        let result = catch_unwind(AssertUnwindSafe(work));
+        // Scopes end in the opposite order.
+        let reported: Vec<_> = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).collect();
+        let failure = match (result, reported.first()) {
+            (Ok(Ok(value)), None) => return Ok(value),
+            (Err(panic), _) => self.give_up(format_args!("wgpu failed: {}", panic_text(panic.as_ref()))),
+            (_, Some(error)) => self.error(error),
+            (Ok(Err(error)), None) => error,
+        };
+        // That a device is lost is the cause of whatever else is wrong, and is told at a poll only.
+        let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(Duration::from_secs(1)) };
+        let _ = catch_unwind(AssertUnwindSafe(|| self.device.poll(wait)));
+        Err(self.check().err().unwrap_or(failure))
+    }
+
+    /// Whether a kernel has passed its test; the caller tests it otherwise.
+    pub fn is_tested(&self, kernel: &NormalKernel) -> bool {
+        lock(&self.tested).contains(kernel)
+    }
+
+    /// Remembers that a kernel has passed its test.
+    pub fn set_tested(&self, kernel: NormalKernel) {
+        lock(&self.tested).insert(kernel);
     }
 
     /// An error on this device.
@@ -192,6 +233,12 @@ fn bind_group_layout(device: &wgpu::Device) -> BindGroupLayout {
             entry(2, wgpu::BufferBindingType::Storage { read_only: false }),
         ],
     })
+}
+
+/// The message of a panic.
+pub(super) fn panic_text(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("no reason given")
 }
 
 /// Locks; a thread that panicked while it held the lock left a cache entry out at worst.

@@ -7,9 +7,10 @@ use super::{GREATEST_DISPATCH, Gpu, adapters, self_test};
 use crate::error::{Error, Result};
 use crate::map::{Channels, Depth, Encoding, HeightDepth, NormalFormat, Size};
 use crate::ops::normal::{NormalOptions, NormalPlan};
+use std::num::NonZero;
 use wgpu::{
-    Buffer, BufferDescriptor, BufferUsages, CommandEncoder, ErrorFilter, Extent3d, TexelCopyBufferInfo,
-    TexelCopyBufferLayout, Texture, TextureFormat, TextureUsages,
+    BindingResource, Buffer, BufferBinding, BufferDescriptor, BufferSlice, BufferUsages, CommandEncoder, Extent3d,
+    TexelCopyBufferInfo, TexelCopyBufferLayout, Texture, TextureFormat, TextureUsages,
 };
 
 /// texbake on a wgpu device that the caller owns.
@@ -17,7 +18,7 @@ use wgpu::{
 /// Nothing is read back and nothing is submitted after [`Hosted::new`]: a bake is recorded into the caller's encoder.
 ///
 /// ```no_run
-/// use texbake::gpu::{Codes, Heights, Hosted, wgpu};
+/// use texbake::gpu::{CodeTarget, HeightSource, Hosted, wgpu};
 /// use texbake::{HeightDepth, NormalOptions, Scale, Size};
 ///
 /// # fn frame(device: &wgpu::Device, queue: &wgpu::Queue, height: &wgpu::Texture, normal: &wgpu::Texture)
@@ -27,7 +28,7 @@ use wgpu::{
 /// let bake = texbake.normal(Size::new(1024, 1024)?, HeightDepth::U16, &options)?;
 ///
 /// let mut encoder = device.create_command_encoder(&Default::default());
-/// bake.encode(&mut encoder, Heights::Texture(height), Codes::Texture(normal))?;
+/// bake.encode(&mut encoder, HeightSource::Texture(height), CodeTarget::Texture(normal))?;
 /// queue.submit([encoder.finish()]);
 /// # Ok(())
 /// # }
@@ -38,18 +39,20 @@ pub struct Hosted {
 
 /// Where the heights of a hosted bake lie.
 #[derive(Debug, Clone, Copy)]
-pub enum Heights<'a> {
-    /// A buffer with usage `STORAGE`: rows of [`NormalBake::heights_row_bytes`] bytes from its beginning on.
-    Buffer(&'a Buffer),
+pub enum HeightSource<'a> {
+    /// Part of a buffer with usage `STORAGE`: rows of [`NormalBake::heights_row_bytes`] bytes. It begins at a multiple
+    /// of the device's `min_storage_buffer_offset_alignment`.
+    Buffer(BufferSlice<'a>),
     /// A texture with usage `COPY_SRC` of the bake's size: `R8Unorm` or `R8Uint`, `R16Unorm` or `R16Uint`, `R32Float`.
     Texture(&'a Texture),
 }
 
 /// Where the codes of a hosted bake go.
 #[derive(Debug, Clone, Copy)]
-pub enum Codes<'a> {
-    /// A buffer with usage `STORAGE`: rows of [`NormalBake::codes_row_bytes`] bytes from its beginning on.
-    Buffer(&'a Buffer),
+pub enum CodeTarget<'a> {
+    /// Part of a buffer with usage `STORAGE`: rows of [`NormalBake::codes_row_bytes`] bytes. It begins at a multiple
+    /// of the device's `min_storage_buffer_offset_alignment`.
+    Buffer(BufferSlice<'a>),
     /// A texture with usage `COPY_DST` of the bake's size, whose format stores the codes as they are: two channels
     /// for xy, four for xyz (the fourth becomes 1), unorm, uint, snorm, sint or float of the codes' depth, never sRGB.
     Texture(&'a Texture),
@@ -72,7 +75,7 @@ impl Hosted {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self> {
         let name = adapters::describe(&device.adapter_info());
         let gpu = Gpu { device: Device::new(name, device.clone(), queue.clone()) };
-        guarded(&gpu.device, || self_test::run(&gpu))?;
+        self_test::run(&gpu.device)?;
         Ok(Self { gpu })
     }
 
@@ -95,8 +98,9 @@ impl Hosted {
                 format!("a map of {size} texels exceeds its bindings of {greatest} bytes; request higher limits");
             return Err(device.error(reason));
         }
+        self.gpu.accept(&bake.plan)?;
         let channels = bake.plan.format.channels.count();
-        guarded(device, || {
+        device.guarded(|| {
             for codes_per_texel in [channels, texture_channels(bake.plan.format)] {
                 device.pipeline(&NormalKernel::new(&bake.plan, codes_per_texel, false));
             }
@@ -122,45 +126,42 @@ impl NormalBake<'_> {
     /// # Errors
     /// [`Error::Parameter`] if a buffer is too small, or a texture has another size or a format that does not hold
     /// the heights or the codes; [`Error::Device`] if wgpu refuses a resource, for a missing usage say.
-    pub fn encode(&self, encoder: &mut CommandEncoder, heights: Heights<'_>, codes: Codes<'_>) -> Result<()> {
+    pub fn encode(&self, encoder: &mut CommandEncoder, heights: HeightSource<'_>, codes: CodeTarget<'_>) -> Result<()> {
         self.check(heights, codes)?;
-        guarded(self.device, || {
+        self.device.guarded(|| {
             let heights = self.heights_on_device(encoder, heights);
             match codes {
-                Codes::Buffer(buffer) => {
+                CodeTarget::Buffer(slice) => {
                     let kernel = self.kernel(self.plan.format.channels.count());
-                    self.dispatch(encoder, &kernel, &heights, buffer, self.codes_row_bytes());
+                    self.dispatch(encoder, &kernel, &heights, &Rows::of(slice, self.codes_row_bytes()));
                 }
-                Codes::Texture(texture) => {
+                CodeTarget::Texture(texture) => {
                     let kernel = self.kernel(texture_channels(self.plan.format));
-                    let row_bytes = kernel.codes_row_bytes(self.plan.size.width()).next_multiple_of(COPY_ROW_BYTES);
-                    let buffer = self.scratch("codes", row_bytes);
-                    self.dispatch(encoder, &kernel, &heights, &buffer, row_bytes);
-                    encoder.copy_buffer_to_texture(
-                        rows_of(&buffer, row_bytes),
-                        texture.as_image_copy(),
-                        extent(self.plan.size),
-                    );
+                    let codes = self.scratch("codes", kernel.codes_row_bytes(self.plan.size.width()));
+                    self.dispatch(encoder, &kernel, &heights, &codes);
+                    encoder.copy_buffer_to_texture(codes.layout(), texture.as_image_copy(), extent(self.plan.size));
                 }
             }
             Ok(())
         })
     }
 
-    fn check(&self, heights: Heights<'_>, codes: Codes<'_>) -> Result<()> {
+    fn check(&self, heights: HeightSource<'_>, codes: CodeTarget<'_>) -> Result<()> {
         let plan = &self.plan;
         match heights {
-            Heights::Buffer(buffer) => {
-                check_length("heights buffer", buffer, self.heights_row_bytes() * plan.size.height())?
+            HeightSource::Buffer(slice) => {
+                check_length("heights buffer", slice, self.heights_row_bytes() * plan.size.height())?
             }
-            Heights::Texture(texture) => {
+            HeightSource::Texture(texture) => {
                 check_size("heights texture", texture, plan.size)?;
                 check_format("heights texture", texture, heights_formats(plan.depth), TextureUsages::COPY_SRC)?;
             }
         }
         match codes {
-            Codes::Buffer(buffer) => check_length("codes buffer", buffer, self.codes_row_bytes() * plan.size.height()),
-            Codes::Texture(texture) => {
+            CodeTarget::Buffer(slice) => {
+                check_length("codes buffer", slice, self.codes_row_bytes() * plan.size.height())
+            }
+            CodeTarget::Texture(texture) => {
                 check_size("codes texture", texture, plan.size)?;
                 check_format("codes texture", texture, codes_formats(plan.format), TextureUsages::COPY_DST)
             }
@@ -172,38 +173,31 @@ impl NormalBake<'_> {
     }
 
     /// The heights as rows in a buffer.
-    fn heights_on_device(&self, encoder: &mut CommandEncoder, heights: Heights<'_>) -> RowsBuffer {
+    fn heights_on_device(&self, encoder: &mut CommandEncoder, heights: HeightSource<'_>) -> Rows {
         match heights {
-            Heights::Buffer(buffer) => RowsBuffer { buffer: buffer.clone(), row_bytes: self.heights_row_bytes() },
-            Heights::Texture(texture) => {
-                let row_bytes = self.heights_row_bytes().next_multiple_of(COPY_ROW_BYTES);
-                let buffer = self.scratch("heights", row_bytes);
-                let size = extent(self.plan.size);
-                encoder.copy_texture_to_buffer(texture.as_image_copy(), rows_of(&buffer, row_bytes), size);
-                RowsBuffer { buffer, row_bytes }
+            HeightSource::Buffer(slice) => Rows::of(slice, self.heights_row_bytes()),
+            HeightSource::Texture(texture) => {
+                let rows = self.scratch("heights", self.heights_row_bytes());
+                encoder.copy_texture_to_buffer(texture.as_image_copy(), rows.layout(), extent(self.plan.size));
+                rows
             }
         }
     }
 
-    /// A buffer of the bake's rows that lives as long as the recorded commands.
-    fn scratch(&self, label: &str, row_bytes: usize) -> Buffer {
-        self.device.device.create_buffer(&BufferDescriptor {
+    /// A buffer for the bake's rows, to be copied from or to a texture; it lives as long as the recorded commands.
+    fn scratch(&self, label: &str, row_bytes: usize) -> Rows {
+        let row_bytes = row_bytes.next_multiple_of(COPY_ROW_BYTES);
+        let buffer = self.device.device.create_buffer(&BufferDescriptor {
             label: Some(label),
             size: (row_bytes * self.plan.size.height()) as u64,
             usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST,
             mapped_at_creation: false,
-        })
+        });
+        Rows { buffer, offset: 0, row_bytes }
     }
 
     /// Records the kernel over all rows, in as many dispatches as their number needs.
-    fn dispatch(
-        &self,
-        encoder: &mut CommandEncoder,
-        kernel: &NormalKernel,
-        heights: &RowsBuffer,
-        codes: &Buffer,
-        codes_row_bytes: usize,
-    ) {
+    fn dispatch(&self, encoder: &mut CommandEncoder, kernel: &NormalKernel, heights: &Rows, codes: &Rows) {
         let Self { device, plan } = self;
         let (width, height) = (plan.size.width(), plan.size.height());
         let pipeline = device.pipeline(kernel);
@@ -217,36 +211,40 @@ impl NormalBake<'_> {
                 body: row_at(first as isize),
                 below: row_at((first + rows) as isize),
                 row_words: row_words as u32,
-                codes: (first * codes_row_bytes / 4) as u32,
-                codes_row_words: (codes_row_bytes / 4) as u32,
+                codes: (first * codes.row_bytes / 4) as u32,
+                codes_row_words: (codes.row_bytes / 4) as u32,
                 ..normal::params(plan)
             };
             let uniform = device.uniform(bytemuck::bytes_of(&params));
-            let bindings =
-                device.bind(uniform.as_entire_binding(), heights.buffer.as_entire_binding(), codes.as_entire_binding());
+            let bindings = device.bind(uniform.as_entire_binding(), heights.binding(height), codes.binding(height));
             dispatch(encoder, &pipeline, &bindings, width, rows);
         }
     }
 }
 
-/// Rows in a buffer.
-struct RowsBuffer {
+/// Rows in a buffer from an offset on.
+struct Rows {
     buffer: Buffer,
+    offset: u64,
     row_bytes: usize,
 }
 
-/// Runs `work` and returns what the device says of it, which would else reach the caller's own error handler.
-fn guarded<T>(device: &Device, work: impl FnOnce() -> Result<T>) -> Result<T> {
-    let scopes = [ErrorFilter::Internal, ErrorFilter::OutOfMemory, ErrorFilter::Validation]
-        .map(|filter| device.device.push_error_scope(filter));
-    let result = work();
-    let mut trouble = None;
-    for scope in scopes.into_iter().rev() {
-        trouble = pollster::block_on(scope.pop()).or(trouble);
+impl Rows {
+    fn of(slice: BufferSlice<'_>, row_bytes: usize) -> Self {
+        Self { buffer: slice.buffer().clone(), offset: slice.offset(), row_bytes }
     }
-    match trouble {
-        Some(error) => Err(device.error(error)),
-        None => result,
+
+    /// The first `count` rows, for a kernel.
+    fn binding(&self, count: usize) -> BindingResource<'_> {
+        let size = NonZero::new((count * self.row_bytes) as u64);
+        BindingResource::Buffer(BufferBinding { buffer: &self.buffer, offset: self.offset, size })
+    }
+
+    /// The rows, for a copy.
+    fn layout(&self) -> TexelCopyBufferInfo<'_> {
+        let bytes_per_row = Some(self.row_bytes as u32);
+        let layout = TexelCopyBufferLayout { offset: self.offset, bytes_per_row, rows_per_image: None };
+        TexelCopyBufferInfo { buffer: &self.buffer, layout }
     }
 }
 
@@ -284,11 +282,11 @@ fn codes_formats(format: NormalFormat) -> &'static [TextureFormat] {
     }
 }
 
-fn check_length(parameter: &'static str, buffer: &Buffer, bytes: usize) -> Result<()> {
-    if buffer.size() < bytes as u64 {
+fn check_length(parameter: &'static str, slice: BufferSlice<'_>, bytes: usize) -> Result<()> {
+    if slice.size() < bytes as u64 {
         return Err(Error::parameter(
             parameter,
-            format_args!("{} bytes", buffer.size()),
+            format_args!("{} bytes", slice.size()),
             format!("at least {bytes} bytes"),
         ));
     }
@@ -318,11 +316,6 @@ fn check_format(
         return Err(Error::parameter(parameter, format_args!("{:?}", texture.usage()), format!("usable as {usage:?}")));
     }
     Ok(())
-}
-
-fn rows_of(buffer: &Buffer, row_bytes: usize) -> TexelCopyBufferInfo<'_> {
-    let layout = TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes as u32), rows_per_image: None };
-    TexelCopyBufferInfo { buffer, layout }
 }
 
 fn extent(size: Size) -> Extent3d {

@@ -2,6 +2,8 @@
 
 mod adapters;
 mod device;
+#[cfg(test)]
+mod faults;
 mod hosted;
 mod kernel;
 mod normal;
@@ -11,11 +13,11 @@ mod self_test;
 mod transfer;
 
 use crate::backend::Backend;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::ops::normal::NormalPlan;
 use crate::stream::{CodeSink, HeightBands};
 use device::Device;
-pub use hosted::{Codes, Heights, Hosted, NormalBake};
+pub use hosted::{CodeTarget, HeightSource, Hosted, NormalBake};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use transfer::Transfer;
 
@@ -45,7 +47,7 @@ impl Gpu {
         let mut reasons = Vec::new();
         for adapter in adapters::primary() {
             let info = adapter.get_info();
-            if !adapters::is_real(&info) {
+            if !adapters::is_candidate(&info) {
                 reasons.push(format!("{} is {}", adapters::describe(&info), adapters::kind(&info)));
                 continue;
             }
@@ -59,9 +61,27 @@ impl Gpu {
     }
 
     fn open_adapter(adapter: &wgpu::Adapter) -> Result<Self> {
-        let gpu = Self { device: Device::open(adapter)? };
-        self_test::run(&gpu)?;
+        // A driver that panics is as good as none.
+        let opened = catch_unwind(AssertUnwindSafe(|| Device::open(adapter))).unwrap_or_else(|panic| {
+            let name = adapters::describe(&adapter.get_info());
+            Err(Error::device(name, format_args!("wgpu failed: {}", device::panic_text(panic.as_ref()))))
+        });
+        let gpu = Self { device: opened? };
+        self_test::run(&gpu.device)?;
         Ok(gpu)
+    }
+
+    /// Refuses rows that this device cannot take, and a kernel that computes wrong bytes; each kernel is tested once.
+    fn accept(&self, plan: &NormalPlan) -> Result<()> {
+        let width = plan.size.width();
+        // A band has at least one row and its halo; a texel has at most four codes.
+        let heights = 3 * normal::heights_row_bytes(width, plan.depth);
+        let codes = 4 * plan.format.depth.bytes() * width.next_multiple_of(normal::TEXELS_PER_INVOCATION);
+        let groups = width.div_ceil(normal::TEXELS_PER_INVOCATION * normal::WORKGROUP);
+        if heights.max(codes) > self.device.greatest_binding() || groups > GREATEST_DISPATCH {
+            return Err(self.device.error(format_args!("rows of {width} texels are too wide for it")));
+        }
+        self_test::accept(&self.device, plan)
     }
 }
 
@@ -71,19 +91,13 @@ impl Backend for Gpu {
     }
 
     fn band_rows(&self, plan: &NormalPlan) -> usize {
-        let row_bytes = plan.row_codes() * plan.format.depth.bytes();
-        (BAND_BYTES / row_bytes).clamp(1, GREATEST_DISPATCH)
+        let texel_bytes = plan.depth.bytes().max(plan.format.channels.count() * plan.format.depth.bytes());
+        (BAND_BYTES / (plan.size.width() * texel_bytes)).clamp(1, GREATEST_DISPATCH)
     }
 
     fn normal(&self, plan: &NormalPlan, bands: &mut dyn HeightBands, sink: &mut dyn CodeSink) -> Result<()> {
-        // The widest rows: 16 bytes of codes for a texel, and a halo above and below one row of heights.
-        if 4 * plan.row_codes() * plan.format.depth.bytes() > self.device.greatest_binding() {
-            return Err(self.device.error(format_args!("rows of {} texels exceed its buffers", plan.size.width())));
-        }
-        // wgpu may panic when a device is lost (gfx-rs/wgpu: poll on a lost device); a lost device is not our bug.
-        catch_unwind(AssertUnwindSafe(|| Transfer::new(&self.device, plan).run(bands, sink))).unwrap_or_else(|_| {
-            Err(self.device.check().err().unwrap_or_else(|| self.device.error("the driver failed")))
-        })
+        self.accept(plan)?;
+        Transfer::new(&self.device, plan)?.run(bands, sink)
     }
 }
 
@@ -92,17 +106,15 @@ pub(crate) fn devices() -> Vec<crate::Device> {
     let mut picked_one = false;
     let describe = |adapter: wgpu::Adapter| {
         let info = adapter.get_info();
-        let self_test = catch_unwind(AssertUnwindSafe(|| Gpu::open_adapter(&adapter).map(drop)))
-            .unwrap_or_else(|_| Err(crate::Error::device(adapters::describe(&info), "the driver failed")))
-            .map_err(|error| error.to_string());
-        let considered = adapters::is_real(&info) && info.backend != wgpu::Backend::Gl;
-        let picked = considered && self_test.is_ok() && !picked_one;
+        let self_test = Gpu::open_adapter(&adapter).map(drop).map_err(|error| error.to_string());
+        let candidate = adapters::is_candidate(&info);
+        let picked = candidate && self_test.is_ok() && !picked_one;
         picked_one |= picked;
-        let reason = match (picked, considered, self_test.is_ok()) {
+        let reason = match (picked, candidate, self_test.is_ok()) {
             (true, ..) => "the first real GPU that passes its self-test",
             (_, false, _) if adapters::is_real(&info) => "OpenGL is used only when it is named",
             (_, false, _) => "software is used only when it is named",
-            (.., false) => "it fails its self-test",
+            (.., false) => "it cannot be used",
             _ => "another GPU comes first",
         };
         crate::Device {

@@ -176,7 +176,7 @@ fn a_device_that_computes_wrong_bytes_fails_its_self_test() {
         assert!(text.contains(from), "{}: no {from:?}", source.name);
         let gpu = Gpu { device: super::Device::open(&adapter).unwrap() };
         gpu.device.substitute(source, &text.replacen(from, to, 1));
-        let error = self_test::run(&gpu).expect_err(source.name).to_string();
+        let error = self_test::run(&gpu.device).expect_err(source.name).to_string();
         assert!(error.contains("fails the self-test"), "{}: {error}", source.name);
     }
 }

@@ -1,54 +1,78 @@
-//! A known-answer test at device open: a driver that computes other bytes than the specification is not used.
+//! Known-answer tests: a device that computes other bytes than the specification is not used.
 
-use super::Gpu;
+use super::device::Device;
+use super::transfer::Transfer;
 use crate::backend::Backend;
 use crate::backend::cpu::Reference;
 use crate::error::Result;
-use crate::exact::Scale;
-use crate::map::{Depth, Encoding, Grid, HeightMap, NormalFormat, NormalMap};
-use crate::ops::normal::{Filter, NormalOptions, NormalPlan};
+use crate::exact::{Rational, Scale};
+use crate::map::{Depth, Encoding, Grid, HeightDepth, HeightMap, NormalFormat, NormalMap};
+use crate::ops::normal::{Filter, NormalOptions, NormalPlan, Precision};
 use crate::stream::{MapBands, MapSink};
 
-/// Bakes small maps through each exact kernel and compares with the reference.
-pub(super) fn run(gpu: &Gpu) -> Result<()> {
-    for (map, options) in cases()? {
-        let plan = NormalPlan::new(&options, map.size(), map.depth())?;
-        if bake(gpu, &map, &plan)? != bake(&Reference, &map, &plan)? {
-            let reason = format!("it fails the self-test: wrong codes for {} heights", map.depth());
-            return Err(gpu.device.error(reason));
-        }
+const WIDTH: usize = 67;
+const HEIGHT: usize = 16;
+
+/// At device open: small maps through each arithmetic.
+pub(super) fn run(device: &Device) -> Result<()> {
+    for (heights, options) in cases()? {
+        let map = noise(heights)?;
+        test(device, &map, &NormalPlan::new(&options, map.size(), heights)?)?;
     }
     Ok(())
 }
 
-/// A map for each exact way: narrow and wide integers to codes, wide integers to floats, floats.
-fn cases() -> Result<[(HeightMap, NormalOptions); 4]> {
-    const WIDTH: usize = 67;
-    const HEIGHT: usize = 16;
-    let noise = |x: usize, y: usize| scrambled((y * WIDTH + x) as u32);
-    let bytes = Grid::from_fn(WIDTH, HEIGHT, |x, y| (noise(x, y) >> 24) as u8)?;
-    let integers = Grid::from_fn(WIDTH, HEIGHT, |x, y| (noise(x, y) >> 16) as u16)?;
-    let floats = Grid::from_fn(WIDTH, HEIGHT, |x, y| {
-        // Every exponent and both signs, subnormals included, infinities and NaN not.
-        f32::from_bits(noise(x, y) & 0xff7f_ffff)
-    })?;
-    let format = |encoding, depth| NormalFormat { encoding, depth, ..Default::default() };
-    // Odd parts as long as allowed: every limb is in use.
-    let steep = Scale::texels(crate::exact::Rational::new(16_777_213, 9_699_691)?);
-    let options = |filter, format| NormalOptions { scale: steep, filter, format, ..Default::default() };
-    Ok([
-        (bytes.into(), NormalOptions { scale: Scale::texels(24), ..Default::default() }),
-        (integers.clone().into(), options(Filter::Scharr, format(Encoding::Unorm, Depth::Bits16))),
-        (integers.into(), options(Filter::Central, format(Encoding::Float, Depth::Float32))),
-        (floats.try_into()?, options(Filter::Sobel, format(Encoding::Float, Depth::Float32))),
-    ])
+/// Before a plan's first bake: a small map with the plan's own options, once for each kernel.
+pub(super) fn accept(device: &Device, plan: &NormalPlan) -> Result<()> {
+    let kernel = Transfer::kernel(plan);
+    if plan.precision == Precision::Exact && !device.is_tested(&kernel) {
+        let map = noise(plan.depth)?;
+        test(device, &map, &NormalPlan { size: map.size(), ..*plan })?;
+        device.set_tested(kernel);
+    }
+    Ok(())
 }
 
-fn bake(backend: &dyn Backend, map: &HeightMap, plan: &NormalPlan) -> Result<NormalMap> {
+/// Bakes a map on the device and by the reference.
+fn test(device: &Device, map: &HeightMap, plan: &NormalPlan) -> Result<()> {
     let mut normal = NormalMap::zeroed(plan.size, plan.format);
-    let mut bands = MapBands::new(map, plan.edges.y, plan.size.height());
-    backend.normal(plan, &mut bands, &mut MapSink::new(normal.codes_mut(), plan.row_codes()))?;
-    Ok(normal)
+    let mut expected = normal.clone();
+    let bands = || MapBands::new(map, plan.edges.y, HEIGHT / 2);
+    Transfer::new(device, plan)?.run(&mut bands(), &mut MapSink::new(normal.codes_mut(), plan.row_codes()))?;
+    Reference.normal(plan, &mut bands(), &mut MapSink::new(expected.codes_mut(), plan.row_codes()))?;
+    if normal == expected {
+        return Ok(());
+    }
+    let (heights, NormalFormat { encoding, depth, .. }) = (map.depth(), plan.format);
+    let reason = format!("it fails the self-test: wrong {encoding} codes of {depth} bits for {heights} heights");
+    Err(device.error(reason))
+}
+
+/// Noise of a height type; floats of every exponent and both signs, subnormals included.
+fn noise(depth: HeightDepth) -> Result<HeightMap> {
+    let bits = |x: usize, y: usize| scrambled((y * WIDTH + x) as u32);
+    Ok(match depth {
+        HeightDepth::U8 => Grid::from_fn(WIDTH, HEIGHT, |x, y| (bits(x, y) >> 24) as u8)?.into(),
+        HeightDepth::U16 => Grid::from_fn(WIDTH, HEIGHT, |x, y| (bits(x, y) >> 16) as u16)?.into(),
+        // The mask leaves out infinities and NaN.
+        HeightDepth::F32 => {
+            Grid::from_fn(WIDTH, HEIGHT, |x, y| f32::from_bits(bits(x, y) & 0xff7f_ffff))?.try_into()?
+        }
+    })
+}
+
+/// Narrow and wide integers to codes, wide integers to floats, floats.
+fn cases() -> Result<[(HeightDepth, NormalOptions); 4]> {
+    let format = |encoding, depth| NormalFormat { encoding, depth, ..Default::default() };
+    // Odd parts as long as allowed: every limb is in use.
+    let steep = Scale::texels(Rational::new(16_777_213, 9_699_691)?);
+    let options = |filter, format| NormalOptions { scale: steep, filter, format, ..Default::default() };
+    Ok([
+        (HeightDepth::U8, NormalOptions { scale: Scale::texels(24), ..Default::default() }),
+        (HeightDepth::U16, options(Filter::Scharr, format(Encoding::Unorm, Depth::Bits16))),
+        (HeightDepth::U16, options(Filter::Central, format(Encoding::Float, Depth::Float32))),
+        (HeightDepth::F32, options(Filter::Sobel, format(Encoding::Float, Depth::Float32))),
+    ])
 }
 
 /// A number without pattern for each index (the finaliser of MurmurHash3, public domain).

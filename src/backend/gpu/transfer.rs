@@ -66,10 +66,16 @@ pub(super) struct Transfer<'a> {
 }
 
 impl<'a> Transfer<'a> {
-    pub fn new(device: &'a Device, plan: &'a NormalPlan) -> Self {
-        let kernel = NormalKernel::new(plan, plan.format.channels.count(), true);
-        let pipeline = device.pipeline(&kernel);
-        Self { device, plan, kernel, pipeline, flying: VecDeque::new() }
+    /// Prepares the kernel.
+    pub fn new(device: &'a Device, plan: &'a NormalPlan) -> Result<Self> {
+        let kernel = Self::kernel(plan);
+        let pipeline = device.guarded(|| Ok(device.pipeline(&kernel)))?;
+        Ok(Self { device, plan, kernel, pipeline, flying: VecDeque::new() })
+    }
+
+    /// The kernel that a plan runs.
+    pub fn kernel(plan: &NormalPlan) -> NormalKernel {
+        NormalKernel::new(plan, plan.format.channels.count(), true)
     }
 
     /// Bakes all bands.
@@ -78,13 +84,13 @@ impl<'a> Transfer<'a> {
             if self.flying.len() == RING {
                 self.land(sink)?;
             }
-            let flight = self.launch(&band)?;
+            let flight = self.device.guarded(|| self.launch(&band))?;
             self.flying.push_back(flight);
         }
         while !self.flying.is_empty() {
             self.land(sink)?;
         }
-        self.device.check()
+        Ok(())
     }
 
     /// Sends a band to the device.
@@ -125,7 +131,6 @@ impl<'a> Transfer<'a> {
         encoder.copy_buffer_to_buffer(&slot.codes, 0, &slot.download, 0, codes_bytes + marks_bytes);
         let submission = device.queue.submit([encoder.finish()]);
 
-        // The download was last read with another nonce in its marks, or is new and zero: stale codes cannot pass.
         let (report, mapped) = channel();
         let also = report.clone();
         slot.upload.map_async(MapMode::Write, .., move |result| drop(report.send(result)));
@@ -135,33 +140,47 @@ impl<'a> Transfer<'a> {
 
     /// Waits for the oldest band and hands its codes on.
     fn land(&mut self, sink: &mut dyn CodeSink) -> Result<()> {
-        let Some(InFlight { slot, rows, nonce, submission, mapped }) = self.flying.pop_front() else { return Ok(()) };
-        let device = self.device;
-        let wait = PollType::Wait { submission_index: Some(submission), timeout: Some(PATIENCE) };
-        let polled = device.device.poll(wait);
-        device.check()?;
-        polled.map_err(|error| device.error(error))?;
-        for _ in 0..2 {
-            let result = mapped.recv_timeout(PATIENCE).map_err(|_| device.error("it did not answer"))?;
-            result.map_err(|error| device.check().err().unwrap_or_else(|| device.error(error)))?;
-        }
-        device.check()?;
-
-        let codes_row_bytes = self.kernel.codes_row_bytes(self.plan.size.width());
-        let view = slot.download.get_mapped_range(..).map_err(|error| device.error(error))?;
-        let (codes, marks) = view.split_at(codes_row_bytes * rows);
+        let Some(flight) = self.flying.pop_front() else { return Ok(()) };
+        let Self { device, plan, .. } = *self;
+        let row_bytes = self.kernel.codes_row_bytes(plan.size.width());
+        let (slot, rows) = (&flight.slot, flight.rows);
+        let view = device.guarded(|| {
+            flight.wait(device)?;
+            slot.download.get_mapped_range(..).map_err(|error| device.error(error))
+        })?;
+        let (codes, marks) = view.split_at(row_bytes * rows);
         for (row, mark) in marks.chunks_exact(4).take(rows).enumerate() {
-            if mark != nonce.wrapping_add(row as u32).to_ne_bytes() {
-                return Err(device.error(format_args!("row {row} of a band came back without having been computed")));
+            if mark != flight.nonce.to_ne_bytes() {
+                let reason = format!("row {row} of a band came back without having been computed");
+                return Err(device.give_up(reason));
             }
         }
+        // What the sink has to say is not the device's fault: it stands outside the guard.
         sink.write(rows, &mut |target| {
-            read_rows(codes, codes_row_bytes, rows, target);
+            read_rows(codes, row_bytes, rows, target);
             Ok(())
         })?;
         drop(view);
-        slot.download.unmap();
-        device.keep(slot);
+        device.guarded(|| {
+            slot.download.unmap();
+            Ok(())
+        })?;
+        device.keep(flight.slot);
+        Ok(())
+    }
+}
+
+impl InFlight {
+    /// Waits until the band was computed and its buffers can be mapped.
+    fn wait(&self, device: &Device) -> Result<()> {
+        let wait = PollType::Wait { submission_index: Some(self.submission.clone()), timeout: Some(PATIENCE) };
+        let polled = device.device.poll(wait);
+        device.check()?;
+        polled.map_err(|error| device.give_up(error))?;
+        for _ in 0..2 {
+            let result = self.mapped.recv_timeout(PATIENCE).map_err(|_| device.give_up("it did not answer"))?;
+            result.map_err(|error| device.check().err().unwrap_or_else(|| device.error(error)))?;
+        }
         Ok(())
     }
 }
@@ -180,11 +199,11 @@ pub(super) fn dispatch(
     pass.dispatch_workgroups(width.div_ceil(TEXELS_PER_INVOCATION * WORKGROUP) as u32, rows as u32, 1);
 }
 
-/// A number that no earlier dispatch of this process marked its rows with, nor a row count away from it.
+/// What marks the rows of a dispatch: another odd number for each of 2^31, so that neither a buffer's earlier content
+/// nor a cleared word passes for it.
 fn fresh_nonce() -> u32 {
-    // A counter, not an option: it only has to differ from the last ones. Odd, so never a cleared word.
-    static NEXT: AtomicU32 = AtomicU32::new(0x7e5b_a4e1);
-    NEXT.fetch_add(0x9e37_79b2, Ordering::Relaxed)
+    static NEXT: AtomicU32 = AtomicU32::new(1);
+    NEXT.fetch_add(2, Ordering::Relaxed)
 }
 
 /// Writes the rows of a band with its halo, each padded to `row_bytes`, and unmaps the buffer.
