@@ -13,11 +13,11 @@ use std::cell::{LazyCell, RefCell};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 use texbake::{
-    Baker, Codes, Depth, Grid, HeightDepth, HeightMap, NormalFormat, NormalOptions, Precision, Result, Scale,
+    Baker, Codes, Depth, Grid, HeightMap, HeightType, NormalFormat, NormalOptions, Precision, Result, Scale,
 };
 
 const SIDES: [usize; 3] = [1024, 4096, 8192];
-const HEIGHTS: [HeightDepth; 3] = [HeightDepth::U8, HeightDepth::U16, HeightDepth::F32];
+const HEIGHTS: [HeightType; 3] = [HeightType::U8, HeightType::U16, HeightType::F32];
 const OUTPUTS: [Depth; 2] = [Depth::Bits8, Depth::Bits16];
 
 /// What would take longer for one map is left out.
@@ -57,7 +57,7 @@ impl Subject {
 
     /// Seconds that a texel takes once everything is compiled.
     fn try_out(&self) -> Result<f64> {
-        let map = terrain(1024, HeightDepth::U16)?;
+        let map = terrain(1024, HeightType::U16)?;
         let options = NormalOptions { precision: self.precision, ..NormalOptions::default() };
         self.baker.normal(&map, &options)?;
         let start = Instant::now();
@@ -96,7 +96,7 @@ fn bench_map<F: FnOnce() -> HeightMap>(
     criterion: &mut Criterion,
     table: &Table,
     subjects: &[Subject],
-    (side, heights): (usize, HeightDepth),
+    (side, heights): (usize, HeightType),
     map: &LazyCell<HeightMap, F>,
     output: Depth,
 ) {
@@ -145,17 +145,17 @@ fn copy(source: &[u8], target: &mut [u8]) {
 }
 
 /// Hills with fine noise: slopes of all directions, few of them alike.
-fn terrain(side: usize, depth: HeightDepth) -> Result<HeightMap> {
+fn terrain(side: usize, height_type: HeightType) -> Result<HeightMap> {
     let height = |x: usize, y: usize| {
         let hills = (x as f32 * 0.013).sin() * (y as f32 * 0.017).cos();
         let hash = (x as u32).wrapping_mul(0x9e37_79b1) ^ (y as u32).wrapping_mul(0x85eb_ca77);
         let noise = (hash ^ (hash >> 15)).wrapping_mul(0x2c1b_3c6d) >> 16;
         0.5 + 0.4 * hills + noise as f32 / 65536.0 * 0.05
     };
-    Ok(match depth {
-        HeightDepth::U8 => Grid::from_fn(side, side, |x, y| (height(x, y) * 255.0) as u8)?.into(),
-        HeightDepth::U16 => Grid::from_fn(side, side, |x, y| (height(x, y) * 65535.0) as u16)?.into(),
-        HeightDepth::F32 => Grid::from_fn(side, side, height)?.try_into()?,
+    Ok(match height_type {
+        HeightType::U8 => Grid::from_fn(side, side, |x, y| (height(x, y) * 255.0) as u8)?.into(),
+        HeightType::U16 => Grid::from_fn(side, side, |x, y| (height(x, y) * 65535.0) as u16)?.into(),
+        HeightType::F32 => Grid::from_fn(side, side, height)?.try_into()?,
     })
 }
 

@@ -3,7 +3,7 @@
 //!     cargo run --release --example 03_hosted
 
 use texbake::gpu::{CodeTarget, HeightSource, Hosted, wgpu};
-use texbake::{Edge, Edges, HeightDepth, NormalOptions, Scale, Size};
+use texbake::{Edge, Edges, HeightType, NormalOptions, Scale, Size};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let texbake = Hosted::new(&device, &queue)?;
     let options = NormalOptions { scale: Scale::texels(24), edges: Edges::both(Edge::Clamp), ..Default::default() };
-    let bake = texbake.normal(size, HeightDepth::F32, &options)?;
+    let bake = texbake.normal(size, HeightType::F32, &options)?;
 
     let mut encoder = device.create_command_encoder(&Default::default());
     bake.encode(&mut encoder, HeightSource::Texture(&heights), CodeTarget::Texture(&normals))?;

@@ -4,7 +4,7 @@ use crate::backend::Backend;
 use crate::backend::cpu::{Cpu, Reference};
 use crate::error::{Error, Result};
 use crate::exact::AxisScale;
-use crate::map::{CodesMut, Edge, HeightDepth, HeightMap, NormalMap, Size};
+use crate::map::{CodesMut, Edge, HeightMap, HeightType, NormalMap, Size};
 use crate::ops::normal::{NormalOptions, NormalPlan};
 use crate::stream::{
     BandReader, CodeSink, CodeWriter, MapBands, MapSink, Monitor, RowOrder, RowSink, RowSource, read_map_watched,
@@ -41,7 +41,7 @@ pub struct Ran {
     /// Size of the map.
     pub size: Size,
     /// How its heights are stored.
-    pub depth: HeightDepth,
+    pub height_type: HeightType,
     /// The scale that was used, and whether it is the one that was asked for.
     pub scale: AxisScale,
 }
@@ -118,7 +118,7 @@ impl Baker {
     /// [`crate::Error::Parameter`] if an option is out of range; [`crate::Error::Device`] if a GPU without a
     /// fallback fails.
     pub fn normal(&self, heights: &HeightMap, options: &NormalOptions) -> Result<NormalMap> {
-        let plan = NormalPlan::new(options, heights.size(), heights.depth())?;
+        let plan = NormalPlan::new(options, heights.size(), heights.height_type())?;
         let mut map = NormalMap::zeroed(plan.size, plan.format);
         self.normal_of_plan(heights, &plan, map.codes_mut())?;
         Ok(map)
@@ -130,7 +130,7 @@ impl Baker {
     /// As [`Baker::normal`], and [`crate::Error::Parameter`] if `codes` is not of the format's depth and the map's
     /// size.
     pub fn normal_into(&self, heights: &HeightMap, options: &NormalOptions, codes: CodesMut<'_>) -> Result<Ran> {
-        let plan = NormalPlan::new(options, heights.size(), heights.depth())?;
+        let plan = NormalPlan::new(options, heights.size(), heights.height_type())?;
         plan.format.check_codes(plan.size, codes.len(), codes.depth())?;
         self.normal_of_plan(heights, &plan, codes)
     }
@@ -160,7 +160,7 @@ impl Baker {
     ) -> Result<Ran> {
         let ((backend, plan), fallback) = self.run(|backend| {
             let source = open()?;
-            let plan = NormalPlan::new(options, source.size(), source.depth())?;
+            let plan = NormalPlan::new(options, source.size(), source.height_type())?;
             let sink = create(plan.size)?;
             let order = match (plan.edges.y, plan.size.height()) {
                 (Edge::Wrap, height) if height > 1 && sink.takes_first_row_last() => RowOrder::FirstRowLast,
@@ -188,7 +188,7 @@ impl Baker {
 
 impl Ran {
     fn new(backend: String, fallback: Option<String>, plan: &NormalPlan) -> Self {
-        Self { backend, fallback, size: plan.size, depth: plan.depth, scale: plan.scale }
+        Self { backend, fallback, size: plan.size, height_type: plan.height_type, scale: plan.scale }
     }
 }
 
@@ -203,7 +203,7 @@ fn stream(
 ) -> Result<()> {
     let band_rows = backend.band_rows(plan);
     let needs_last_row_first = plan.edges.y == Edge::Wrap && order == RowOrder::FromTop;
-    if needs_last_row_first && plan.size.texels() * plan.depth.bytes() <= HELD_BYTES {
+    if needs_last_row_first && plan.size.texels() * plan.height_type.bytes() <= HELD_BYTES {
         let map = read_map_watched(source.as_mut(), monitor)?;
         return backend.normal(plan, &mut MapBands::new(&map, plan.edges.y, band_rows), sink);
     }

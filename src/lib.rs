@@ -72,7 +72,7 @@ pub use devices::{Device, devices};
 pub use error::{Error, Result};
 pub use exact::{AxisScale, Rational, Scale};
 pub use map::{
-    Channels, Codes, CodesMut, CodesRef, Convention, Depth, Edge, Edges, Encoding, Grid, HeightDepth, HeightMap,
+    Channels, Codes, CodesMut, CodesRef, Convention, Depth, Edge, Edges, Encoding, Grid, HeightMap, HeightType,
     Heights, HeightsMut, NormalFormat, NormalMap, Size,
 };
 pub use ops::normal::{Filter, NormalOptions, Precision};

@@ -227,7 +227,7 @@ impl FileReport {
             fallback: ran.and_then(|ran| ran.fallback.clone()),
             width: ran.map(|ran| ran.size.width()),
             height: ran.map(|ran| ran.size.height()),
-            depth: ran.map(|ran| ran.depth.to_string()),
+            depth: ran.map(|ran| ran.height_type.to_string()),
             scale: scale.map(|s| UsedScale { x: ratio(s.x, s.q), y: ratio(s.y, s.q), exact: s.exact }),
             milliseconds: (outcome.time.as_secs_f64() * 1e6).round() / 1e3,
             bytes_in: outcome.bytes_in,

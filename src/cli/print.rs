@@ -27,7 +27,7 @@ pub fn file_line(place: &str, job: &Job, outcome: &Outcome) -> String {
             job.input.display(),
             job.output.display(),
             ran.size,
-            ran.depth,
+            ran.height_type,
             milliseconds(outcome.time)
         ),
         (Err(_), Some(reason)) => format!("[{place}] failed {reason}"),
@@ -44,7 +44,7 @@ pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
         "{}: {}, {} to {} {} {} {}, scale {}, {}; {} ({}); {}, {rate:.1} Mtexel/s, {} in, {} out",
         job.output.display(),
         ran.size,
-        ran.depth,
+        ran.height_type,
         format.encoding,
         format.depth,
         format.channels,
@@ -65,7 +65,7 @@ pub fn file_table(jobs: &[Job], outcomes: &[Outcome]) -> Option<String> {
     let all = jobs.len() <= TABLE_ROWS;
     for (job, outcome) in jobs.iter().zip(outcomes).filter(|(_, outcome)| all || outcome.result.is_err()) {
         let (size, depth) = match &outcome.result {
-            Ok(ran) => (ran.size.to_string(), ran.depth.to_string()),
+            Ok(ran) => (ran.size.to_string(), ran.height_type.to_string()),
             Err(_) => Default::default(),
         };
         let time =

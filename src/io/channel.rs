@@ -4,7 +4,7 @@ use super::samples::{Layout, Opened, SampleRows, Samples, copy, len, part_mut};
 use super::srgb::{self, SrgbTable};
 use super::{ColorSpace, ReadOptions};
 use crate::error::{Error, Result};
-use crate::map::{HeightDepth, Heights, HeightsMut, Size};
+use crate::map::{HeightType, Heights, HeightsMut, Size};
 use crate::stream::RowSource;
 use std::convert::Infallible;
 use std::fmt::{self, Display};
@@ -214,16 +214,16 @@ impl RowSource for HeightRows {
         self.layout.size
     }
 
-    fn depth(&self) -> HeightDepth {
-        if self.srgb.is_some() { HeightDepth::U16 } else { self.layout.depth }
+    fn height_type(&self) -> HeightType {
+        if self.srgb.is_some() { HeightType::U16 } else { self.layout.depth }
     }
 
     fn read(&mut self, mut rows: HeightsMut<'_>) -> Result<()> {
         let (width, left) = (self.layout.size.width(), self.layout.size.height() - self.next_row);
-        let (count, depth) = (len(&rows), rows.as_ref().depth());
-        if depth != self.depth() || count % width != 0 || count / width > left {
-            let range = format!("whole rows of {width} {} heights, at most {left}", self.depth());
-            return Err(Error::parameter("room for rows", format_args!("{count} {depth} heights"), range));
+        let (count, given) = (len(&rows), rows.as_ref().height_type());
+        if given != self.height_type() || count % width != 0 || count / width > left {
+            let range = format!("whole rows of {width} {} heights, at most {left}", self.height_type());
+            return Err(Error::parameter("room for rows", format_args!("{count} {given} heights"), range));
         }
         if self.in_place {
             self.samples.read(part_mut(&mut rows, 0..count))?;

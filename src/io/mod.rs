@@ -132,7 +132,7 @@ impl HeightMap {
     pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<(Self, Vec<String>)> {
         let path = path.as_ref();
         let HeightFile { mut rows, warnings } = open_heights(path, options)?;
-        limits::check_map(path, rows.size(), rows.depth(), options.max_bytes)?;
+        limits::check_map(path, rows.size(), rows.height_type(), options.max_bytes)?;
         Ok((read_map(rows.as_mut())?, warnings))
     }
 }

@@ -3,7 +3,7 @@
 use super::samples::{DecodedWhole, Layout, Opened, Samples};
 use super::{ReadOptions, limits, srgb};
 use crate::error::{Error, Result};
-use crate::map::HeightDepth;
+use crate::map::HeightType;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use std::io::{Cursor, ErrorKind};
 use std::path::Path;
@@ -34,7 +34,7 @@ pub(super) fn open(path: &Path, format: ImageFormat, options: &ReadOptions) -> R
             return Err(Error::file(path, reason, "convert it to PNG"));
         }
     };
-    let layout = Layout { size, depth: HeightDepth::U8, colours, alpha };
+    let layout = Layout { size, depth: HeightType::U8, colours, alpha };
     let profile = decoder.icc_profile().unwrap_or_default().unwrap_or_default();
     let mut samples = vec![0; layout.row_bytes() * size.height()];
     if decoder.total_bytes() != samples.len() as u64 {

@@ -2,7 +2,7 @@
 
 use super::samples::{Layout, Opened, SampleRows, bytes_mut};
 use crate::error::{Error, Result};
-use crate::map::{HeightDepth, HeightsMut, Size};
+use crate::map::{HeightType, HeightsMut, Size};
 use std::fmt;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -54,11 +54,11 @@ const KINDS: [(RawKind, &str); 5] = [
 ];
 
 impl RawKind {
-    fn depth(self) -> HeightDepth {
+    fn depth(self) -> HeightType {
         match self {
-            Self::U8 => HeightDepth::U8,
-            Self::U16Le | Self::U16Be => HeightDepth::U16,
-            Self::F32Le | Self::F32Be => HeightDepth::F32,
+            Self::U8 => HeightType::U8,
+            Self::U16Le | Self::U16Be => HeightType::U16,
+            Self::F32Le | Self::F32Be => HeightType::F32,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What a decoder gives: interleaved samples, row by row.
 
 use crate::error::Result;
-use crate::map::{HeightDepth, Heights, HeightsMut, Size};
+use crate::map::{HeightType, Heights, HeightsMut, Size};
 
 /// The samples of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -9,7 +9,7 @@ pub(super) struct Layout {
     /// Texels.
     pub size: Size,
     /// Type of a sample.
-    pub depth: HeightDepth,
+    pub depth: HeightType,
     /// Samples per texel that are colours or data.
     pub colours: usize,
     /// Whether one more sample follows them.
@@ -83,11 +83,11 @@ impl Opened {
 }
 
 impl Samples {
-    pub fn zeroed(depth: HeightDepth, count: usize) -> Self {
+    pub fn zeroed(depth: HeightType, count: usize) -> Self {
         match depth {
-            HeightDepth::U8 => Self::U8(vec![0; count]),
-            HeightDepth::U16 => Self::U16(vec![0; count]),
-            HeightDepth::F32 => Self::F32(vec![0.0; count]),
+            HeightType::U8 => Self::U8(vec![0; count]),
+            HeightType::U16 => Self::U16(vec![0; count]),
+            HeightType::F32 => Self::F32(vec![0.0; count]),
         }
     }
 

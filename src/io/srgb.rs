@@ -1,6 +1,6 @@
 //! sRGB codes as linear ones, for heights that were saved as colours by mistake.
 
-use crate::map::{HeightDepth, Heights};
+use crate::map::{HeightType, Heights};
 
 /// What the user should know about a file that says it is sRGB and is read as data.
 pub(super) const WARNING: &str = "the file says that its codes are sRGB colours; they are read as heights, unconverted. \
@@ -11,7 +11,7 @@ pub(super) struct SrgbTable(Vec<u16>);
 
 impl SrgbTable {
     /// The table for codes of `depth`; floats have none.
-    pub fn new(depth: HeightDepth) -> Option<Self> {
+    pub fn new(depth: HeightType) -> Option<Self> {
         let greatest = depth.greatest_code()?;
         let linear = |code| (65535.0 * eotf(f64::from(code) / f64::from(greatest)) + 0.5) as u16;
         Some(Self((0..=greatest).map(linear).collect()))

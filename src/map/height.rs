@@ -6,7 +6,7 @@ use std::fmt;
 
 /// How a height map stores a height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum HeightDepth {
+pub enum HeightType {
     /// A code H of 8 bits: h = H / 255.
     U8,
     /// A code H of 16 bits: h = H / 65535.
@@ -15,7 +15,7 @@ pub enum HeightDepth {
     F32,
 }
 
-impl HeightDepth {
+impl HeightType {
     /// Bytes of one height.
     pub fn bytes(self) -> usize {
         match self {
@@ -35,7 +35,7 @@ impl HeightDepth {
     }
 }
 
-impl fmt::Display for HeightDepth {
+impl fmt::Display for HeightType {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::U8 => "u8",
@@ -103,8 +103,8 @@ impl HeightMap {
     }
 
     /// How a height is stored.
-    pub fn depth(&self) -> HeightDepth {
-        self.heights().depth()
+    pub fn height_type(&self) -> HeightType {
+        self.heights().height_type()
     }
 
     /// All heights, row by row.
@@ -142,11 +142,11 @@ impl TryFrom<Grid<f32>> for HeightMap {
 
 impl Heights<'_> {
     /// How a height is stored.
-    pub fn depth(&self) -> HeightDepth {
+    pub fn height_type(&self) -> HeightType {
         match self {
-            Self::U8(_) => HeightDepth::U8,
-            Self::U16(_) => HeightDepth::U16,
-            Self::F32(_) => HeightDepth::F32,
+            Self::U8(_) => HeightType::U8,
+            Self::U16(_) => HeightType::U16,
+            Self::F32(_) => HeightType::F32,
         }
     }
 

@@ -9,5 +9,5 @@ mod normal;
 pub use codes::{Codes, CodesMut, CodesRef};
 pub use format::{Channels, Convention, Depth, Edge, Edges, Encoding, NormalFormat};
 pub use grid::{Grid, Size};
-pub use height::{HeightDepth, HeightMap, Heights, HeightsMut};
+pub use height::{HeightMap, HeightType, Heights, HeightsMut};
 pub use normal::NormalMap;

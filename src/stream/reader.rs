@@ -6,7 +6,7 @@ use super::monitor::Monitor;
 use super::order::RowOrder;
 use super::thread;
 use crate::error::Result;
-use crate::map::{Edge, Grid, HeightDepth, HeightMap, HeightsMut, Size};
+use crate::map::{Edge, Grid, HeightMap, HeightType, HeightsMut, Size};
 use std::thread::{Builder, JoinHandle};
 
 /// A height map that is read from the top.
@@ -15,7 +15,7 @@ pub trait RowSource: Send {
     fn size(&self) -> Size;
 
     /// How a height is stored.
-    fn depth(&self) -> HeightDepth;
+    fn height_type(&self) -> HeightType;
 
     /// Reads the next rows: as many as `rows` has room for, never more than are left.
     ///
@@ -116,7 +116,7 @@ impl BandCutter {
     fn new(mut source: Box<dyn RowSource>, edge: Edge, order: RowOrder) -> Result<Self> {
         let mut last_row = Vec::new();
         if edge == Edge::Wrap && order == RowOrder::FromTop {
-            let mut row = BandBuffer::new(source.size().width(), source.depth(), 1);
+            let mut row = BandBuffer::new(source.size().width(), source.height_type(), 1);
             source.read_last_row(row.rows_mut(0, 1))?;
             row.check_finite(0, 1, source.size().height() - 1)?;
             last_row = row.slot(0).to_vec();
@@ -127,7 +127,7 @@ impl BandCutter {
 
     fn buffer(&self, band_rows: usize) -> BandBuffer {
         let size = self.source.size();
-        BandBuffer::new(size.width(), self.source.depth(), band_rows.min(size.height()) + 2)
+        BandBuffer::new(size.width(), self.source.height_type(), band_rows.min(size.height()) + 2)
     }
 
     /// Fills `buffer` with the next band.
@@ -199,19 +199,19 @@ impl BandCutter {
 #[derive(Debug)]
 struct BandBuffer {
     width: usize,
-    depth: HeightDepth,
+    height_type: HeightType,
     body_rows: usize,
     words: Vec<u32>,
 }
 
 impl BandBuffer {
-    fn new(width: usize, depth: HeightDepth, rows: usize) -> Self {
-        let words = (rows * width * depth.bytes()).div_ceil(4);
-        Self { width, depth, body_rows: rows, words: vec![0; words] }
+    fn new(width: usize, height_type: HeightType, rows: usize) -> Self {
+        let words = (rows * width * height_type.bytes()).div_ceil(4);
+        Self { width, height_type, body_rows: rows, words: vec![0; words] }
     }
 
     fn row_bytes(&self) -> usize {
-        self.width * self.depth.bytes()
+        self.width * self.height_type.bytes()
     }
 
     fn bytes(&self) -> &[u8] {
@@ -232,12 +232,12 @@ impl BandBuffer {
     }
 
     fn rows_mut(&mut self, first: usize, count: usize) -> HeightsMut<'_> {
-        let (bytes, depth) = (self.row_bytes(), self.depth);
+        let (bytes, height_type) = (self.row_bytes(), self.height_type);
         let rows = &mut self.bytes_mut()[first * bytes..][..count * bytes];
-        match depth {
-            HeightDepth::U8 => HeightsMut::U8(rows),
-            HeightDepth::U16 => HeightsMut::U16(bytemuck::cast_slice_mut(rows)),
-            HeightDepth::F32 => HeightsMut::F32(bytemuck::cast_slice_mut(rows)),
+        match height_type {
+            HeightType::U8 => HeightsMut::U8(rows),
+            HeightType::U16 => HeightsMut::U16(bytemuck::cast_slice_mut(rows)),
+            HeightType::F32 => HeightsMut::F32(bytemuck::cast_slice_mut(rows)),
         }
     }
 
@@ -254,10 +254,10 @@ impl BandBuffer {
             let (body, below) = rest.split_at(buffer.body_rows * buffer.width);
             Band { width: buffer.width, above, body, below }
         }
-        match self.depth {
-            HeightDepth::U8 => HeightBand::U8(cut(self)),
-            HeightDepth::U16 => HeightBand::U16(cut(self)),
-            HeightDepth::F32 => HeightBand::F32(cut(self)),
+        match self.height_type {
+            HeightType::U8 => HeightBand::U8(cut(self)),
+            HeightType::U16 => HeightBand::U16(cut(self)),
+            HeightType::F32 => HeightBand::F32(cut(self)),
         }
     }
 }
@@ -292,9 +292,9 @@ pub(crate) fn read_map_watched(source: &mut dyn RowSource, monitor: &Monitor) ->
         }
         Grid::new(size.width(), size.height(), heights)
     }
-    match source.depth() {
-        HeightDepth::U8 => Ok(read(source, monitor, |rows| HeightsMut::U8(rows))?.into()),
-        HeightDepth::U16 => Ok(read(source, monitor, |rows| HeightsMut::U16(rows))?.into()),
-        HeightDepth::F32 => read(source, monitor, |rows| HeightsMut::F32(rows))?.try_into(),
+    match source.height_type() {
+        HeightType::U8 => Ok(read(source, monitor, |rows| HeightsMut::U8(rows))?.into()),
+        HeightType::U16 => Ok(read(source, monitor, |rows| HeightsMut::U16(rows))?.into()),
+        HeightType::F32 => read(source, monitor, |rows| HeightsMut::F32(rows))?.try_into(),
     }
 }

@@ -4,7 +4,7 @@ use super::{
     Band, BandReader, CodeSink, CodeWriter, HeightBand, HeightBands, MapBands, RowOrder, RowSink, RowSource, read_map,
 };
 use crate::error::{Error, Result};
-use crate::map::{CodesRef, Edge, Grid, HeightDepth, HeightMap, Heights, HeightsMut, NormalFormat, Size};
+use crate::map::{CodesRef, Edge, Grid, HeightMap, HeightType, Heights, HeightsMut, NormalFormat, Size};
 use std::sync::Arc;
 
 /// Rows of a map in memory.
@@ -30,7 +30,7 @@ impl MemorySource {
             (Heights::U8(all), HeightsMut::U8(rows)) => copy(all, from, rows),
             (Heights::U16(all), HeightsMut::U16(rows)) => copy(all, from, rows),
             (Heights::F32(all), HeightsMut::F32(rows)) => copy(all, from, rows),
-            _ => panic!("rows of another depth were asked for"),
+            _ => panic!("rows of another height type were asked for"),
         }
     }
 }
@@ -40,8 +40,8 @@ impl RowSource for MemorySource {
         self.map.size()
     }
 
-    fn depth(&self) -> HeightDepth {
-        self.map.depth()
+    fn height_type(&self) -> HeightType {
+        self.map.height_type()
     }
 
     fn read(&mut self, rows: HeightsMut<'_>) -> Result<()> {
@@ -113,7 +113,7 @@ fn bands_hold_the_map_and_its_halo() {
             let rows = rows_of_map(map);
             for edge in [Edge::Wrap, Edge::Clamp, Edge::Mirror] {
                 for band_rows in [1, 2, 3, 4, 7, 8, 30, 31, 1000] {
-                    let what = format!("{} rows of {}, {edge}, bands of {band_rows}", height, map.depth());
+                    let what = format!("{} rows of {}, {edge}, bands of {band_rows}", height, map.height_type());
                     let source = || Box::new(MemorySource::new(map.clone())) as Box<dyn RowSource>;
                     let mut in_memory = MapBands::new(map, edge, band_rows);
                     let mut read = BandReader::new(source(), edge, RowOrder::FromTop, band_rows).expect("a thread");

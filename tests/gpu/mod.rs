@@ -7,7 +7,7 @@ use crate::support::{FORMATS, Image, Random, every_baker, map_f32, map_u8, map_u
 use std::sync::OnceLock;
 use texbake::gpu::{CodeTarget, HeightSource, Hosted, wgpu};
 use texbake::{
-    Baker, Channels, CodesRef, Depth, Edge, Edges, Encoding, HeightDepth, HeightMap, NormalFormat, NormalMap,
+    Baker, Channels, CodesRef, Depth, Edge, Edges, Encoding, HeightMap, HeightType, NormalFormat, NormalMap,
     NormalOptions, Size,
 };
 use wgpu::{BufferUsages, TextureFormat, TextureUsages};
@@ -137,12 +137,12 @@ fn buffers_get_the_reference_bytes() {
         for format in FORMATS {
             for channels in [Channels::Xyz, Channels::Xy] {
                 let options = NormalOptions { edges, ..options("7/3", NormalFormat { channels, ..format }) };
-                let bake = hosted.normal(map.size(), map.depth(), &options).unwrap();
+                let bake = hosted.normal(map.size(), map.height_type(), &options).unwrap();
                 let height = map.size().height();
                 let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
                 let heights = host.buffer(bake.heights_row_bytes() * height, usage);
                 let codes = host.buffer(bake.codes_row_bytes() * height, usage);
-                let row = map.size().width() * map.depth().bytes();
+                let row = map.size().width() * map.height_type().bytes();
                 host.write(&heights, &height_bytes(&map), row, bake.heights_row_bytes());
 
                 let mut encoder = host.device.create_command_encoder(&Default::default());
@@ -155,7 +155,7 @@ fn buffers_get_the_reference_bytes() {
                 let baked = host.read(&codes);
                 let rows: Vec<u8> =
                     baked.chunks(bake.codes_row_bytes()).flat_map(|padded| padded[..row].to_vec()).collect();
-                assert!(rows == code_bytes(&expected), "{} heights, {options:?}", map.depth());
+                assert!(rows == code_bytes(&expected), "{} heights, {options:?}", map.height_type());
             }
         }
     }
@@ -179,12 +179,12 @@ fn textures_get_the_reference_codes_and_an_opaque_alpha() {
             let options = NormalOptions { edges: Edges::both(Edge::Clamp), ..options("24", format) };
             let size = map.size();
             let heights = host.texture(size, source, TextureUsages::COPY_SRC | TextureUsages::COPY_DST);
-            let row = (size.width() * map.depth().bytes()) as u32;
+            let row = (size.width() * map.height_type().bytes()) as u32;
             let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
             host.queue.write_texture(heights.as_image_copy(), &height_bytes(&map), layout, extent(size));
             let codes = host.texture(size, target, TextureUsages::COPY_SRC | TextureUsages::COPY_DST);
 
-            let bake = hosted.normal(size, map.depth(), &options).unwrap();
+            let bake = hosted.normal(size, map.height_type(), &options).unwrap();
             let mut encoder = host.device.create_command_encoder(&Default::default());
             bake.encode(&mut encoder, HeightSource::Texture(&heights), CodeTarget::Texture(&codes)).unwrap();
             host.queue.submit([encoder.finish()]);
@@ -193,7 +193,7 @@ fn textures_get_the_reference_codes_and_an_opaque_alpha() {
             let texels = code_bytes(&expected).chunks(3 * depth.bytes());
             let with_alpha: Vec<u8> = texels.flat_map(|texel| [texel, &alpha].concat()).collect();
             let baked = host.read_texture(&codes, size, 4 * depth.bytes());
-            assert!(baked == with_alpha, "{} heights to {target:?}", map.depth());
+            assert!(baked == with_alpha, "{} heights to {target:?}", map.height_type());
         }
     }
 }
@@ -203,7 +203,7 @@ fn resources_that_do_not_fit_are_errors_that_say_so() {
     let Some(host) = host() else { return };
     let hosted = Hosted::new(&host.device, &host.queue).unwrap();
     let size = Size::new(8, 8).unwrap();
-    let bake = hosted.normal(size, HeightDepth::U16, &NormalOptions::default()).unwrap();
+    let bake = hosted.normal(size, HeightType::U16, &NormalOptions::default()).unwrap();
     let storage = |bytes| host.buffer(bytes, BufferUsages::STORAGE);
     let texture = |format, usage| host.texture(size, format, usage);
     let (good, small) = (storage(1024), storage(64));
@@ -259,7 +259,7 @@ fn fast_is_within_one_code_of_exact() {
                 let [a, b] = [&exact, &fast].map(|options| Image::from(&subject.baker.normal(map, options).unwrap()));
                 let off = (0..a.bits.len()).map(|i| (a.number(i) - b.number(i)).abs());
                 let worst = off.fold(0.0, f64::max);
-                assert!(worst <= 1.0, "{}, {} heights, {format:?}: {worst} codes", subject.name, map.depth());
+                assert!(worst <= 1.0, "{}, {} heights, {format:?}: {worst} codes", subject.name, map.height_type());
             }
         }
     }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 use texbake::io::{HeightFile, ReadOptions, create_normals, open_heights};
 use texbake::{
-    Channels, CodesRef, Convention, Depth, Encoding, Error, HeightDepth, HeightMap, Heights, HeightsMut, NormalFormat,
+    Channels, CodesRef, Convention, Depth, Encoding, Error, HeightMap, HeightType, Heights, HeightsMut, NormalFormat,
     Size,
 };
 
@@ -45,11 +45,11 @@ impl Folder {
 }
 
 impl Values {
-    pub fn zeroed(depth: HeightDepth, count: usize) -> Self {
+    pub fn zeroed(depth: HeightType, count: usize) -> Self {
         match depth {
-            HeightDepth::U8 => Self::U8(vec![0; count]),
-            HeightDepth::U16 => Self::U16(vec![0; count]),
-            HeightDepth::F32 => Self::F32(vec![0.0; count]),
+            HeightType::U8 => Self::U8(vec![0; count]),
+            HeightType::U16 => Self::U16(vec![0; count]),
+            HeightType::F32 => Self::F32(vec![0.0; count]),
         }
     }
 
@@ -87,12 +87,12 @@ pub fn read_all_ways(path: &Path, options: &ReadOptions) -> Result<Values, Error
     let last_row = at_once.part((height - 1) * width..height * width);
     for pieces in [&[1][..], &[3, 1, 2], &[height]] {
         let HeightFile { mut rows, .. } = open_heights(path, options)?;
-        assert_eq!((rows.size(), rows.depth()), (map.size(), map.depth()));
-        let mut last = Values::zeroed(map.depth(), width);
+        assert_eq!((rows.size(), rows.height_type()), (map.size(), map.height_type()));
+        let mut last = Values::zeroed(map.height_type(), width);
         rows.read_last_row(last.part_mut(0..width))?;
         assert_eq!(last, last_row, "last row first");
 
-        let mut read = Values::zeroed(map.depth(), width * height);
+        let mut read = Values::zeroed(map.height_type(), width * height);
         let mut row = 0;
         for piece in pieces.iter().cycle() {
             let end = (row + piece).min(height);

@@ -84,7 +84,7 @@ fn two_channels_are_the_first_two_of_three() {
                 let (xyz, xy) = (baked(Channels::Xyz), baked(Channels::Xy));
                 let first_two: Vec<u32> = xyz.bits.chunks(3).flat_map(|texel| &texel[..2]).copied().collect();
                 assert_eq!(xy.bits.len(), 2 * map.size().texels(), "{name}, {format:?}");
-                assert!(xy.bits == first_two, "{name}, {} heights, {format:?}", map.depth());
+                assert!(xy.bits == first_two, "{name}, {} heights, {format:?}", map.height_type());
             }
         }
     }

@@ -58,7 +58,7 @@ impl Factors<BigInt> {
     /// Eq. 7.43, (-dx, -dy, 1) with dx = s_x Gx / (D M) and s_x = n_x / d_x, times d_x d_y D M.
     fn new(map: &HeightMap, options: &NormalOptions) -> Self {
         let (_, divisor) = stencil(options.filter);
-        let greatest = map.depth().greatest_code().expect("integer heights");
+        let greatest = map.height_type().greatest_code().expect("integer heights");
         let [(nx, dx), (ny, dy)] = axis_scales(options.scale, map.size());
         let x = -nx * &dy;
         let y = match options.format.convention {

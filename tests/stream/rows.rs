@@ -6,7 +6,7 @@ use crate::support::{
 use std::sync::{Arc, Mutex};
 use texbake::stream::{Monitor, RowSink, RowSource};
 use texbake::{
-    Baker, Channels, CodesRef, Edge, Edges, Error, HeightDepth, HeightMap, Heights, HeightsMut, NormalFormat,
+    Baker, Channels, CodesRef, Edge, Edges, Error, HeightMap, HeightType, Heights, HeightsMut, NormalFormat,
     NormalOptions, Result, Size,
 };
 
@@ -29,7 +29,7 @@ impl MemorySource {
             (Heights::U8(all), HeightsMut::U8(rows)) => rows.copy_from_slice(&all[from..][..rows.len()]),
             (Heights::U16(all), HeightsMut::U16(rows)) => rows.copy_from_slice(&all[from..][..rows.len()]),
             (Heights::F32(all), HeightsMut::F32(rows)) => rows.copy_from_slice(&all[from..][..rows.len()]),
-            _ => panic!("rows of another depth were asked for"),
+            _ => panic!("rows of another height type were asked for"),
         }
     }
 }
@@ -43,8 +43,8 @@ impl RowSource for MemorySource {
         self.map.size()
     }
 
-    fn depth(&self) -> HeightDepth {
-        self.map.depth()
+    fn height_type(&self) -> HeightType {
+        self.map.height_type()
     }
 
     fn read(&mut self, rows: HeightsMut<'_>) -> Result<()> {
@@ -178,12 +178,20 @@ fn rows_give_the_bytes_of_maps() {
                     let (ran, taken) = stream.bake(baker);
                     let ran = ran.unwrap_or_else(|error| panic!("{name}: {error}"));
                     let whole = baker.normal(map, &options).expect("a bake");
-                    assert!(taken.bytes == whole.codes().bytes(), "{name}, {height} rows, {}, {edge}", map.depth());
+                    assert!(
+                        taken.bytes == whole.codes().bytes(),
+                        "{name}, {height} rows, {}, {edge}",
+                        map.height_type()
+                    );
                     assert!(taken.finished, "{name}");
                     let late = first_row_last && edge == Edge::Wrap && height > 1;
                     assert_eq!(taken.firsts[0], usize::from(late), "{name}: {:?}", taken.firsts);
                     assert_eq!(stream.monitor.texels(), map.size().texels() as u64, "{name}");
-                    assert_eq!((ran.size, ran.depth, ran.fallback), (map.size(), map.depth(), None), "{name}");
+                    assert_eq!(
+                        (ran.size, ran.height_type, ran.fallback),
+                        (map.size(), map.height_type(), None),
+                        "{name}"
+                    );
                     assert_eq!((ran.scale.x, ran.scale.y, ran.scale.q, ran.scale.exact), (24, 24, 1, true), "{name}");
                 }
             }
@@ -274,8 +282,8 @@ impl RowSource for Careless {
         self.source.size()
     }
 
-    fn depth(&self) -> HeightDepth {
-        self.source.depth()
+    fn height_type(&self) -> HeightType {
+        self.source.height_type()
     }
 
     fn read(&mut self, rows: HeightsMut<'_>) -> Result<()> {
@@ -338,8 +346,8 @@ impl RowSource for Stopping {
         self.source.size()
     }
 
-    fn depth(&self) -> HeightDepth {
-        self.source.depth()
+    fn height_type(&self) -> HeightType {
+        self.source.height_type()
     }
 
     fn read(&mut self, rows: HeightsMut<'_>) -> Result<()> {

@@ -49,6 +49,6 @@ fn open() -> Bakers {
 pub fn assert_every_baker(map: &HeightMap, options: &NormalOptions, expected: &Image) {
     for Subject { name, baker } in every_baker() {
         let baked = baker.normal(map, options).unwrap_or_else(|error| panic!("{name}, {options:?}: {error}"));
-        assert_same(format_args!("{name}, {} heights, {options:?}", map.depth()), &Image::from(&baked), expected);
+        assert_same(format_args!("{name}, {} heights, {options:?}", map.height_type()), &Image::from(&baked), expected);
     }
 }

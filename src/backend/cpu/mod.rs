@@ -88,7 +88,7 @@ impl Backend for Cpu {
 
     fn band_rows(&self, plan: &NormalPlan) -> usize {
         let codes = plan.row_codes() * plan.format.depth.bytes();
-        let row_bytes = plan.size.width() * plan.depth.bytes() + codes;
+        let row_bytes = plan.size.width() * plan.height_type.bytes() + codes;
         (BAND_BYTES / row_bytes).max(4 * self.threads()).min(plan.size.height())
     }
 

@@ -13,7 +13,7 @@ pub(super) fn bake(plan: &NormalPlan, strip: &HeightBand<'_>, codes: CodesMut<'_
         (HeightBand::U8(strip), Slope::Integer(slope)) => bake_integers(plan, slope, strip, codes),
         (HeightBand::U16(strip), Slope::Integer(slope)) => bake_integers(plan, slope, strip, codes),
         (HeightBand::F32(strip), Slope::Float(slope)) => bake_floats(plan, slope, strip, codes),
-        _ => unreachable!("the plan was made for heights of another depth"),
+        _ => unreachable!("the plan was made for heights of another type"),
     }
 }
 

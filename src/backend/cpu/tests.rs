@@ -58,7 +58,7 @@ fn formats() -> Vec<NormalFormat> {
 }
 
 fn baked(backend: &dyn Backend, map: &HeightMap, options: &NormalOptions, band_rows: usize) -> Codes {
-    let plan = NormalPlan::new(options, map.size(), map.depth()).unwrap();
+    let plan = NormalPlan::new(options, map.size(), map.height_type()).unwrap();
     // Poisoned, so that a texel that nobody writes cannot pass.
     let mut codes = Codes::zeroed(plan.format.depth, plan.size.height() * plan.row_codes());
     codes.as_mut().bytes_mut().fill(0xa5);
@@ -78,7 +78,7 @@ fn difference(map: &HeightMap, options: &NormalOptions, got: &Codes, expected: &
     Some(format!(
         "{} {} code {at}, column {x}, row {y}: {} is not {}; {options:?}",
         map.size(),
-        map.depth(),
+        map.height_type(),
         code(got),
         code(expected)
     ))
@@ -286,7 +286,7 @@ fn the_name_says_what_runs() {
 fn bands_hold_some_rows_for_every_thread() {
     let rows = |width, height| {
         let plan =
-            NormalPlan::new(&NormalOptions::default(), Size::new(width, height).unwrap(), crate::map::HeightDepth::U16);
+            NormalPlan::new(&NormalOptions::default(), Size::new(width, height).unwrap(), crate::map::HeightType::U16);
         Cpu::with_threads(3).unwrap().band_rows(&plan.unwrap())
     };
     assert_eq!(rows(4096, 4096), 51); // 1 MiB over 4096 (2 + 3) bytes

@@ -6,7 +6,7 @@ use super::transfer::Transfer;
 use super::{Gpu, adapters};
 use crate::backend::Backend;
 use crate::error::Result;
-use crate::map::{Edge, Grid, HeightDepth, HeightMap, NormalMap, Size};
+use crate::map::{Edge, Grid, HeightMap, HeightType, NormalMap, Size};
 use crate::ops::normal::{NormalOptions, NormalPlan};
 use crate::stream::{HeightBand, HeightBands, MapBands, MapSink};
 
@@ -25,7 +25,7 @@ fn map() -> HeightMap {
 }
 
 fn plan(map: &HeightMap) -> NormalPlan {
-    NormalPlan::new(&NormalOptions::default(), map.size(), map.depth()).unwrap()
+    NormalPlan::new(&NormalOptions::default(), map.size(), map.height_type()).unwrap()
 }
 
 /// Bakes in bands of eight rows; before each band `before` is told which one it is.
@@ -87,7 +87,7 @@ fn rows_too_wide_for_the_device_are_refused() {
     let Some(device) = lavapipe() else { return };
     let gpu = Gpu { device };
     let size = Size::new(65_536 * 256, 1).unwrap();
-    let plan = NormalPlan::new(&NormalOptions::default(), size, HeightDepth::U8).unwrap();
+    let plan = NormalPlan::new(&NormalOptions::default(), size, HeightType::U8).unwrap();
     struct NoBands;
     impl HeightBands for NoBands {
         fn next(&mut self) -> Result<Option<HeightBand<'_>>> {

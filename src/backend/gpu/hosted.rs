@@ -5,7 +5,7 @@ use super::normal::{self, NormalKernel, Params, heights_row_bytes};
 use super::transfer::dispatch;
 use super::{GREATEST_DISPATCH, Gpu, adapters, self_test};
 use crate::error::{Error, Result};
-use crate::map::{Channels, Depth, Encoding, HeightDepth, NormalFormat, Size};
+use crate::map::{Channels, Depth, Encoding, HeightType, NormalFormat, Size};
 use crate::ops::normal::{NormalOptions, NormalPlan};
 use std::num::NonZero;
 use wgpu::{
@@ -19,13 +19,13 @@ use wgpu::{
 ///
 /// ```no_run
 /// use texbake::gpu::{CodeTarget, HeightSource, Hosted, wgpu};
-/// use texbake::{HeightDepth, NormalOptions, Scale, Size};
+/// use texbake::{HeightType, NormalOptions, Scale, Size};
 ///
 /// # fn frame(device: &wgpu::Device, queue: &wgpu::Queue, height: &wgpu::Texture, normal: &wgpu::Texture)
 /// # -> texbake::Result<()> {
 /// let texbake = Hosted::new(device, queue)?;
 /// let options = NormalOptions { scale: Scale::texels(24), ..Default::default() };
-/// let bake = texbake.normal(Size::new(1024, 1024)?, HeightDepth::U16, &options)?;
+/// let bake = texbake.normal(Size::new(1024, 1024)?, HeightType::U16, &options)?;
 ///
 /// let mut encoder = device.create_command_encoder(&Default::default());
 /// bake.encode(&mut encoder, HeightSource::Texture(height), CodeTarget::Texture(normal))?;
@@ -79,7 +79,7 @@ impl Hosted {
         Ok(Self { gpu })
     }
 
-    /// Resolves the options for maps of one size and depth, and compiles the kernels.
+    /// Resolves the options for maps of one size and height type, and compiles the kernels.
     ///
     /// Heights in a buffer or texture are not checked: the codes around a float height that is NaN or infinite mean
     /// nothing.
@@ -87,9 +87,9 @@ impl Hosted {
     /// # Errors
     /// [`Error::Parameter`] if an option is out of range; [`Error::Device`] if the device has no room for such a map
     /// in one binding.
-    pub fn normal(&self, size: Size, depth: HeightDepth, options: &NormalOptions) -> Result<NormalBake<'_>> {
+    pub fn normal(&self, size: Size, height_type: HeightType, options: &NormalOptions) -> Result<NormalBake<'_>> {
         let device = &self.gpu.device;
-        let bake = NormalBake { device, plan: NormalPlan::new(options, size, depth)? };
+        let bake = NormalBake { device, plan: NormalPlan::new(options, size, height_type)? };
         let rows =
             [bake.heights_row_bytes(), bake.codes_row_bytes()].map(|bytes| bytes.next_multiple_of(COPY_ROW_BYTES));
         let greatest = device.greatest_binding();
@@ -113,7 +113,7 @@ impl Hosted {
 impl NormalBake<'_> {
     /// Bytes from one row of heights to the next in a buffer: four texels make whole words.
     pub fn heights_row_bytes(&self) -> usize {
-        heights_row_bytes(self.plan.size.width(), self.plan.depth)
+        heights_row_bytes(self.plan.size.width(), self.plan.height_type)
     }
 
     /// Bytes from one row of codes to the next in a buffer: four texels make whole words.
@@ -154,7 +154,7 @@ impl NormalBake<'_> {
             }
             HeightSource::Texture(texture) => {
                 check_size("heights texture", texture, plan.size)?;
-                check_format("heights texture", texture, heights_formats(plan.depth), TextureUsages::COPY_SRC)?;
+                check_format("heights texture", texture, heights_formats(plan.height_type), TextureUsages::COPY_SRC)?;
             }
         }
         match codes {
@@ -256,11 +256,11 @@ fn texture_channels(format: NormalFormat) -> usize {
     }
 }
 
-fn heights_formats(depth: HeightDepth) -> &'static [TextureFormat] {
-    match depth {
-        HeightDepth::U8 => &[TextureFormat::R8Unorm, TextureFormat::R8Uint],
-        HeightDepth::U16 => &[TextureFormat::R16Unorm, TextureFormat::R16Uint],
-        HeightDepth::F32 => &[TextureFormat::R32Float],
+fn heights_formats(height_type: HeightType) -> &'static [TextureFormat] {
+    match height_type {
+        HeightType::U8 => &[TextureFormat::R8Unorm, TextureFormat::R8Uint],
+        HeightType::U16 => &[TextureFormat::R16Unorm, TextureFormat::R16Uint],
+        HeightType::F32 => &[TextureFormat::R32Float],
     }
 }
 

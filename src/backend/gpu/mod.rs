@@ -75,7 +75,7 @@ impl Gpu {
     fn accept(&self, plan: &NormalPlan) -> Result<()> {
         let width = plan.size.width();
         // A band has at least one row and its halo; a texel has at most four codes.
-        let heights = 3 * normal::heights_row_bytes(width, plan.depth);
+        let heights = 3 * normal::heights_row_bytes(width, plan.height_type);
         let codes = 4 * plan.format.depth.bytes() * width.next_multiple_of(normal::TEXELS_PER_INVOCATION);
         let groups = width.div_ceil(normal::TEXELS_PER_INVOCATION * normal::WORKGROUP);
         if heights.max(codes) > self.device.greatest_binding() || groups > GREATEST_DISPATCH {
@@ -91,7 +91,7 @@ impl Backend for Gpu {
     }
 
     fn band_rows(&self, plan: &NormalPlan) -> usize {
-        let texel_bytes = plan.depth.bytes().max(plan.format.channels.count() * plan.format.depth.bytes());
+        let texel_bytes = plan.height_type.bytes().max(plan.format.channels.count() * plan.format.depth.bytes());
         (BAND_BYTES / (plan.size.width() * texel_bytes)).clamp(1, GREATEST_DISPATCH)
     }
 

@@ -2,7 +2,7 @@
 
 use super::kernel::{KernelSource, NORMAL_FAST, NORMAL_FLOAT_HEIGHTS, NORMAL_INTEGER_CODES, NORMAL_INTEGER_FLOATS};
 use crate::exact::CodeRounding;
-use crate::map::{Depth, Encoding, HeightDepth, NormalFormat};
+use crate::map::{Depth, Encoding, HeightType, NormalFormat};
 use crate::ops::normal::{FloatSlope, IntegerSlope, NormalPlan, Precision, Slope, Stencil};
 use bytemuck::{Pod, Zeroable};
 
@@ -68,12 +68,12 @@ impl NormalKernel {
             (Precision::Exact, Slope::Integer(_)) => NORMAL_INTEGER_CODES,
         };
         let narrow = match (plan.slope, rounding) {
-            (Slope::Integer(slope), Some(rounding)) => fits_64_bits(slope, plan.stencil, plan.depth, rounding),
+            (Slope::Integer(slope), Some(rounding)) => fits_64_bits(slope, plan.stencil, plan.height_type, rounding),
             _ => false,
         };
         Self {
             source,
-            height_bits: 8 * plan.depth.bytes() as u32,
+            height_bits: 8 * plan.height_type.bytes() as u32,
             code_bits: 8 * plan.format.depth.bytes() as u32,
             code_is_float: rounding.is_none(),
             codes_per_texel,
@@ -104,8 +104,8 @@ impl NormalKernel {
 }
 
 /// Bytes of a row of heights as the kernel reads it.
-pub(super) fn heights_row_bytes(width: usize, depth: HeightDepth) -> usize {
-    width.next_multiple_of(TEXELS_PER_INVOCATION) * depth.bytes()
+pub(super) fn heights_row_bytes(width: usize, height_type: HeightType) -> usize {
+    width.next_multiple_of(TEXELS_PER_INVOCATION) * height_type.bytes()
 }
 
 /// What `Params` takes from the plan; places and sizes are for the caller.
@@ -145,8 +145,8 @@ fn code_of_one(format: NormalFormat) -> u32 {
 }
 
 /// Whether m X, m^2 S and all that the comparison multiplies stay within 32 and 64 bits.
-fn fits_64_bits(slope: IntegerSlope, stencil: Stencil, depth: HeightDepth, rounding: CodeRounding) -> bool {
-    let greatest_sum = u128::from(depth.greatest_code().unwrap_or(0)) * (stencil.divisor() as u128 / 2);
+fn fits_64_bits(slope: IntegerSlope, stencil: Stencil, height_type: HeightType, rounding: CodeRounding) -> bool {
+    let greatest_sum = u128::from(height_type.greatest_code().unwrap_or(0)) * (stencil.divisor() as u128 / 2);
     let squares = [slope.px.unsigned_abs(), slope.py.unsigned_abs()].map(|p| (u128::from(p) * greatest_sum).pow(2));
     let s = squares[0] + squares[1] + (slope.z as u128).pow(2);
     s.checked_mul((rounding.m as u128).pow(2)).is_some_and(|product| product < 1 << 64)

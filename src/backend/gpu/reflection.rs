@@ -4,7 +4,7 @@ use super::kernel::{ALL, KernelSource};
 use super::normal::{NormalKernel, Params, WORKGROUP};
 use super::{Gpu, self_test};
 use crate::exact::Scale;
-use crate::map::{Channels, Convention, Depth, Encoding, HeightDepth, NormalFormat, Size};
+use crate::map::{Channels, Convention, Depth, Encoding, HeightType, NormalFormat, Size};
 use crate::ops::normal::{NormalOptions, NormalPlan, Precision};
 use naga::{AddressSpace, ScalarKind, StorageAccess, TypeInner};
 use std::collections::BTreeSet;
@@ -141,7 +141,7 @@ fn every_file_under_kernels_is_registered() {
 #[test]
 fn constants_are_overrides_of_their_kernel() {
     let mut seen = BTreeSet::new();
-    for depth in [HeightDepth::U8, HeightDepth::U16, HeightDepth::F32] {
+    for depth in [HeightType::U8, HeightType::U16, HeightType::F32] {
         for (encoding, code_depth) in [(Encoding::Unorm, Depth::Bits8), (Encoding::Float, Depth::Float16)] {
             for precision in [Precision::Exact, Precision::Fast] {
                 let format =

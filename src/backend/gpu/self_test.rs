@@ -6,7 +6,7 @@ use crate::backend::Backend;
 use crate::backend::cpu::Reference;
 use crate::error::Result;
 use crate::exact::{Rational, Scale};
-use crate::map::{Depth, Encoding, Grid, HeightDepth, HeightMap, NormalFormat, NormalMap};
+use crate::map::{Depth, Encoding, Grid, HeightMap, HeightType, NormalFormat, NormalMap};
 use crate::ops::normal::{Filter, NormalOptions, NormalPlan, Precision};
 use crate::stream::{MapBands, MapSink};
 
@@ -26,7 +26,7 @@ pub(super) fn run(device: &Device) -> Result<()> {
 pub(super) fn accept(device: &Device, plan: &NormalPlan) -> Result<()> {
     let kernel = Transfer::kernel(plan);
     if plan.precision == Precision::Exact && !device.is_tested(&kernel) {
-        let map = noise(plan.depth)?;
+        let map = noise(plan.height_type)?;
         test(device, &map, &NormalPlan { size: map.size(), ..*plan })?;
         device.set_tested(kernel);
     }
@@ -43,35 +43,33 @@ fn test(device: &Device, map: &HeightMap, plan: &NormalPlan) -> Result<()> {
     if normal == expected {
         return Ok(());
     }
-    let (heights, NormalFormat { encoding, depth, .. }) = (map.depth(), plan.format);
+    let (heights, NormalFormat { encoding, depth, .. }) = (map.height_type(), plan.format);
     let reason = format!("it fails the self-test: wrong {encoding} codes of {depth} bits for {heights} heights");
     Err(device.error(reason))
 }
 
 /// Noise of a height type; floats of every exponent and both signs, subnormals included.
-fn noise(depth: HeightDepth) -> Result<HeightMap> {
+fn noise(height_type: HeightType) -> Result<HeightMap> {
     let bits = |x: usize, y: usize| scrambled((y * WIDTH + x) as u32);
-    Ok(match depth {
-        HeightDepth::U8 => Grid::from_fn(WIDTH, HEIGHT, |x, y| (bits(x, y) >> 24) as u8)?.into(),
-        HeightDepth::U16 => Grid::from_fn(WIDTH, HEIGHT, |x, y| (bits(x, y) >> 16) as u16)?.into(),
+    Ok(match height_type {
+        HeightType::U8 => Grid::from_fn(WIDTH, HEIGHT, |x, y| (bits(x, y) >> 24) as u8)?.into(),
+        HeightType::U16 => Grid::from_fn(WIDTH, HEIGHT, |x, y| (bits(x, y) >> 16) as u16)?.into(),
         // The mask leaves out infinities and NaN.
-        HeightDepth::F32 => {
-            Grid::from_fn(WIDTH, HEIGHT, |x, y| f32::from_bits(bits(x, y) & 0xff7f_ffff))?.try_into()?
-        }
+        HeightType::F32 => Grid::from_fn(WIDTH, HEIGHT, |x, y| f32::from_bits(bits(x, y) & 0xff7f_ffff))?.try_into()?,
     })
 }
 
 /// Narrow and wide integers to codes, wide integers to floats, floats.
-fn cases() -> Result<[(HeightDepth, NormalOptions); 4]> {
+fn cases() -> Result<[(HeightType, NormalOptions); 4]> {
     let format = |encoding, depth| NormalFormat { encoding, depth, ..Default::default() };
     // Odd parts as long as allowed: every limb is in use.
     let steep = Scale::texels(Rational::new(16_777_213, 9_699_691)?);
     let options = |filter, format| NormalOptions { scale: steep, filter, format, ..Default::default() };
     Ok([
-        (HeightDepth::U8, NormalOptions { scale: Scale::texels(24), ..Default::default() }),
-        (HeightDepth::U16, options(Filter::Scharr, format(Encoding::Unorm, Depth::Bits16))),
-        (HeightDepth::U16, options(Filter::Central, format(Encoding::Float, Depth::Float32))),
-        (HeightDepth::F32, options(Filter::Sobel, format(Encoding::Float, Depth::Float32))),
+        (HeightType::U8, NormalOptions { scale: Scale::texels(24), ..Default::default() }),
+        (HeightType::U16, options(Filter::Scharr, format(Encoding::Unorm, Depth::Bits16))),
+        (HeightType::U16, options(Filter::Central, format(Encoding::Float, Depth::Float32))),
+        (HeightType::F32, options(Filter::Sobel, format(Encoding::Float, Depth::Float32))),
     ])
 }
 

@@ -97,7 +97,7 @@ impl<'a> Transfer<'a> {
     fn launch(&self, band: &HeightBand<'_>) -> Result<InFlight> {
         let Self { device, plan, .. } = self;
         let (width, rows) = (plan.size.width(), band.rows());
-        let row_bytes = heights_row_bytes(width, plan.depth);
+        let row_bytes = heights_row_bytes(width, plan.height_type);
         let codes_row_bytes = self.kernel.codes_row_bytes(width);
         let heights_bytes = (row_bytes * (rows + 2)) as u64;
         let codes_bytes = (codes_row_bytes * rows) as u64;

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::io::channel::Channel;
 use crate::io::samples::{Layout, Opened, SampleRows, Samples, copy, len, part, part_mut};
 use crate::io::{ReadOptions, limits};
-use crate::map::{HeightDepth, HeightsMut};
+use crate::map::{HeightType, HeightsMut};
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{Chunk, CompressedBlock};
 use exr::compression::Compression;
@@ -90,7 +90,7 @@ pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
     file.read_exact(&mut table).map_err(Error::io(path))?;
     let offsets = table.as_chunks::<8>().0.iter().map(|offset| u64::from_le_bytes(*offset)).collect();
 
-    let layout = Layout { size, depth: HeightDepth::F32, colours: wanted.len(), alpha: false };
+    let layout = Layout { size, depth: HeightType::F32, colours: wanted.len(), alpha: false };
     let channels = wanted.iter().map(|index| block_channel(path, &header.channels.list, *index));
     let rows = ExrRows {
         path: path.into(),
@@ -105,7 +105,7 @@ pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
         channels: channels.collect::<Result<_>>()?,
         texel_bytes,
         next_row: 0,
-        group: Samples::zeroed(HeightDepth::F32, layout.per_row() * rows_held),
+        group: Samples::zeroed(HeightType::F32, layout.per_row() * rows_held),
         decoded: None,
         meta,
     };

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::io::samples::{DecodedWhole, Layout, Opened, SampleRows, Samples, bytes_mut, len};
 use crate::io::{ReadOptions, limits, srgb};
-use crate::map::{HeightDepth, HeightsMut};
+use crate::map::{HeightType, HeightsMut};
 use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Reader, Transformations};
 use std::fs::File;
 use std::io::{BufReader, ErrorKind};
@@ -69,7 +69,7 @@ fn start(path: &Path, max_bytes: u64) -> Result<(Reader<BufReader<File>>, Layout
         return Err(Error::file(path, "its first frame has another size than its header says", DAMAGED));
     }
     let (colour, bits) = reader.output_color_type();
-    let depth = if bits == BitDepth::Sixteen { HeightDepth::U16 } else { HeightDepth::U8 };
+    let depth = if bits == BitDepth::Sixteen { HeightType::U16 } else { HeightType::U8 };
     let (colours, alpha) = match colour {
         ColorType::Grayscale => (1, false),
         ColorType::GrayscaleAlpha => (1, true),

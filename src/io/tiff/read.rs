@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::io::samples::{Layout, Opened, SampleRows, Samples, copy, len, part, part_mut};
 use crate::io::{ReadOptions, limits, srgb};
-use crate::map::{HeightDepth, HeightsMut};
+use crate::map::{HeightType, HeightsMut};
 use std::fs::File;
 use std::io::{BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -110,12 +110,12 @@ fn colours(path: &Path, decoder: &mut Decoder<BufReader<File>>) -> Result<(usize
 }
 
 /// The type of a height for a type of samples.
-fn depth(path: &Path, sample_type: Option<DecodingSampleType>, bits: u8) -> Result<HeightDepth> {
+fn depth(path: &Path, sample_type: Option<DecodingSampleType>, bits: u8) -> Result<HeightType> {
     use DecodingSampleType::{F16, F32, F64, I8, I16, U8, U16};
     match (sample_type, bits) {
-        (Some(U8 | I8), 8) => Ok(HeightDepth::U8),
-        (Some(U16 | I16), 16) => Ok(HeightDepth::U16),
-        (Some(F16), 16) | (Some(F32), 32) | (Some(F64), 64) => Ok(HeightDepth::F32),
+        (Some(U8 | I8), 8) => Ok(HeightType::U8),
+        (Some(U16 | I16), 16) => Ok(HeightType::U16),
+        (Some(F16), 16) | (Some(F32), 32) | (Some(F64), 64) => Ok(HeightType::F32),
         _ => {
             let reason = format!("its samples are {bits}-bit integers, which texbake does not read from TIFF");
             Err(Error::file(path, reason, "convert it to 16-bit integers or 32-bit floats"))

@@ -3,7 +3,7 @@
 use super::{Filter, NormalOptions, Precision};
 use crate::error::Result;
 use crate::exact::AxisScale;
-use crate::map::{Convention, Edges, HeightDepth, NormalFormat, Size};
+use crate::map::{Convention, Edges, HeightType, NormalFormat, Size};
 
 /// A slope stencil as data.
 ///
@@ -66,7 +66,7 @@ pub(crate) enum Slope {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct NormalPlan {
     pub size: Size,
-    pub depth: HeightDepth,
+    pub height_type: HeightType,
     pub stencil: Stencil,
     pub edges: Edges,
     pub slope: Slope,
@@ -81,7 +81,7 @@ impl NormalPlan {
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] names the option that is out of range.
-    pub fn new(options: &NormalOptions, size: Size, depth: HeightDepth) -> Result<Self> {
+    pub fn new(options: &NormalOptions, size: Size, height_type: HeightType) -> Result<Self> {
         options.format.check()?;
         let scale = options.scale.resolve(size)?;
         let stencil = Stencil::from(options.filter);
@@ -90,7 +90,7 @@ impl NormalPlan {
             Convention::Gl => scale.y,
             Convention::Dx => -scale.y,
         };
-        let slope = match depth.greatest_code() {
+        let slope = match height_type.greatest_code() {
             Some(greatest) => Slope::Integer(IntegerSlope::new(-scale.x, y, scale.q, stencil, greatest)),
             None => {
                 let divisor = i64::from(scale.q) * i64::from(stencil.divisor());
@@ -98,7 +98,7 @@ impl NormalPlan {
             }
         };
         let NormalOptions { edges, format, precision, .. } = *options;
-        Ok(Self { size, depth, stencil, edges, slope, format, precision, scale })
+        Ok(Self { size, height_type, stencil, edges, slope, format, precision, scale })
     }
 
     /// The slope constants in floats, whatever the heights are: what `fast` computes with on a GPU.

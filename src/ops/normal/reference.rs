@@ -30,7 +30,7 @@ pub(crate) fn codes_of_texel(plan: &NormalPlan, band: &HeightBand<'_>, x: usize,
             let sums = float_sums(plan.stencil, band.neighbours(plan.edges.x, x, row));
             store_float(plan.format, slope.normal(sums), codes, index);
         }
-        _ => unreachable!("the plan was made for heights of another depth"),
+        _ => unreachable!("the plan was made for heights of another type"),
     }
 }
 
