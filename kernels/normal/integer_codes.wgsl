@@ -5,33 +5,23 @@ override NARROW: bool = false;
 
 fn normal_codes(north: vec3<u32>, middle: vec3<u32>, south: vec3<u32>) -> vec3<u32> {
     let g = integer_sums(north, middle, south);
-    let negative = (vec2(params.px, params.py) < vec2(0)) != (g < vec2(0));
-    let a = vec2<u32>(abs(vec2(params.px, params.py)));
-    let b = vec2<u32>(abs(g));
     if (NARROW) {
-        let x = a.x * b.x;
-        let y = a.y * b.y;
+        let negative = leans_negative(g);
+        let a = vec2<u32>(abs(vec2(params.px, params.py))) * vec2<u32>(abs(g));
         let z = params.z_low;
-        let s = sum64(sum64(product(x, x), product(y, y)), product(z, z));
+        let s = sum64(sum64(product(a.x, a.x), product(a.y, a.y)), product(z, z));
         let scale = inverseSqrt(float64(s));
         return vec3(
-            narrow_code(negative.x, x, s, scale),
-            narrow_code(negative.y, y, s, scale),
+            narrow_code(negative.x, a.x, s, scale),
+            narrow_code(negative.y, a.y, s, scale),
             narrow_code(false, z, s, scale),
         );
     }
-    let x = product(a.x, b.x);
-    let y = product(a.y, b.y);
-    let z = vec2(params.z_low, params.z_high);
-    let xx = square96(x);
-    let yy = square96(y);
-    let zz = square96(z);
-    let s = sum96(sum96(xx, yy), zz);
-    let scale = inverseSqrt(float96(s));
+    let n = wide_normal(g);
     return vec3(
-        wide_code(negative.x, float64(x) * scale, xx, s),
-        wide_code(negative.y, float64(y) * scale, yy, s),
-        wide_code(false, float64(z) * scale, zz, s),
+        wide_code(n.negative.x, n.estimate.x, n.xx, n.s),
+        wide_code(n.negative.y, n.estimate.y, n.yy, n.s),
+        wide_code(false, n.estimate.z, n.zz, n.s),
     );
 }
 

@@ -6,21 +6,11 @@ const CUT_TO_F32: i32 = 26;
 const CUT_TO_F16: i32 = 22;
 
 fn normal_codes(north: vec3<u32>, middle: vec3<u32>, south: vec3<u32>) -> vec3<u32> {
-    let g = integer_sums(north, middle, south);
-    let negative = (vec2(params.px, params.py) < vec2(0)) != (g < vec2(0));
-    let p = vec2<u32>(abs(vec2(params.px, params.py)));
-    let x = product(p.x, u32(abs(g.x)));
-    let y = product(p.y, u32(abs(g.y)));
-    let z = vec2(params.z_low, params.z_high);
-    let xx = square96(x);
-    let yy = square96(y);
-    let zz = square96(z);
-    let s = sum96(sum96(xx, yy), zz);
-    let scale = inverseSqrt(float96(s));
+    let n = wide_normal(integer_sums(north, middle, south));
     return vec3(
-        nearest_float(negative.x, float64(x) * scale, xx, s),
-        nearest_float(negative.y, float64(y) * scale, yy, s),
-        nearest_float(false, float64(z) * scale, zz, s),
+        nearest_float(n.negative.x, n.estimate.x, n.xx, n.s),
+        nearest_float(n.negative.y, n.estimate.y, n.yy, n.s),
+        nearest_float(false, n.estimate.z, n.zz, n.s),
     );
 }
 

@@ -58,7 +58,7 @@ impl RowSink for FileSink {
             (self.next_row, self.first_row_left) = (Some(1), true);
         }
         let end = if first == 0 && self.first_row_left { 1 } else { self.height };
-        let whole = count > 0 && rows.len() % self.row_codes == 0;
+        let whole = count > 0 && rows.len().is_multiple_of(self.row_codes);
         if depth != self.depth || !whole || self.next_row != Some(first) || first + count > end {
             let given = format!("{} codes of depth {depth} from row {first} on", rows.len());
             let next = self.next_row.map_or("no more".into(), |row| format!("up to {} from row {row} on", end - row));

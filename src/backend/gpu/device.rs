@@ -3,7 +3,7 @@
 use super::adapters::describe;
 use super::kernel::KernelSource;
 use super::normal::NormalKernel;
-use super::transfer::Slot;
+use super::slot::Slot;
 use crate::error::{Error, Result};
 use std::any::Any;
 use std::collections::{HashMap, HashSet};
@@ -201,7 +201,7 @@ impl Device {
                 // A slot that is too small would never be used again by a set of equal maps.
                 idle.pop();
                 drop(idle);
-                Slot::new(self, heights_bytes, codes_bytes)
+                Slot::new(&self.device, heights_bytes, codes_bytes)
             }
         }
     }

@@ -23,6 +23,7 @@ impl KernelSource {
 const NORMAL: &str = include_str!("../../../kernels/normal.wgsl");
 const INTEGER_CODES: &str = include_str!("../../../kernels/normal/integer_codes.wgsl");
 const INTEGER_FLOATS: &str = include_str!("../../../kernels/normal/integer_floats.wgsl");
+const WIDE_NORMAL: &str = include_str!("../../../kernels/normal/wide_normal.wgsl");
 const FLOAT_HEIGHTS: &str = include_str!("../../../kernels/normal/float_heights.wgsl");
 const FAST: &str = include_str!("../../../kernels/normal/fast.wgsl");
 const HEIGHTS: &str = include_str!("../../../kernels/shared/heights.wgsl");
@@ -33,12 +34,12 @@ const SOFT_FLOAT: &str = include_str!("../../../kernels/shared/soft_float.wgsl")
 pub(crate) const NORMAL_INTEGER_CODES: KernelSource = KernelSource {
     name: "normal, integer heights to integer codes",
     entry_point: "normal",
-    files: &[NORMAL, INTEGER_CODES, HEIGHTS, CODES, WIDE],
+    files: &[NORMAL, INTEGER_CODES, WIDE_NORMAL, HEIGHTS, CODES, WIDE],
 };
 pub(crate) const NORMAL_INTEGER_FLOATS: KernelSource = KernelSource {
     name: "normal, integer heights to floats",
     entry_point: "normal",
-    files: &[NORMAL, INTEGER_FLOATS, HEIGHTS, CODES, WIDE, SOFT_FLOAT],
+    files: &[NORMAL, INTEGER_FLOATS, WIDE_NORMAL, HEIGHTS, CODES, WIDE, SOFT_FLOAT],
 };
 pub(crate) const NORMAL_FLOAT_HEIGHTS: KernelSource = KernelSource {
     name: "normal, float heights",

@@ -10,6 +10,7 @@ mod normal;
 #[cfg(test)]
 mod reflection;
 mod self_test;
+mod slot;
 mod transfer;
 
 use crate::backend::Backend;

@@ -2,6 +2,7 @@
 
 use super::device::Device;
 use super::normal::{self, NormalKernel, Params, TEXELS_PER_INVOCATION, WORKGROUP, heights_row_bytes};
+use super::slot::Slot;
 use crate::error::Result;
 use crate::map::CodesMut;
 use crate::ops::normal::NormalPlan;
@@ -10,42 +11,13 @@ use std::collections::VecDeque;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
-use wgpu::{Buffer, BufferDescriptor, BufferUsages, CommandEncoderDescriptor, ComputePipeline, MapMode, PollType};
+use wgpu::{Buffer, CommandEncoderDescriptor, ComputePipeline, MapMode, PollType};
 
 /// Bands in flight.
 const RING: usize = 3;
 
 /// A device that has not answered for this long will not: drivers reset after two seconds.
 const PATIENCE: Duration = Duration::from_secs(60);
-
-/// The buffers of one band in flight.
-pub(crate) struct Slot {
-    params: Buffer,
-    upload: Buffer,
-    heights: Buffer,
-    codes: Buffer,
-    download: Buffer,
-}
-
-impl Slot {
-    pub(super) fn new(device: &Device, heights_bytes: u64, codes_bytes: u64) -> Self {
-        let buffer = |label, size, usage, mapped_at_creation| {
-            device.device.create_buffer(&BufferDescriptor { label: Some(label), size, usage, mapped_at_creation })
-        };
-        let params_bytes = size_of::<Params>() as u64;
-        Self {
-            params: buffer("params", params_bytes, BufferUsages::UNIFORM | BufferUsages::COPY_DST, false),
-            upload: buffer("upload", heights_bytes, BufferUsages::MAP_WRITE | BufferUsages::COPY_SRC, true),
-            heights: buffer("heights", heights_bytes, BufferUsages::STORAGE | BufferUsages::COPY_DST, false),
-            codes: buffer("codes", codes_bytes, BufferUsages::STORAGE | BufferUsages::COPY_SRC, false),
-            download: buffer("download", codes_bytes, BufferUsages::MAP_READ | BufferUsages::COPY_DST, false),
-        }
-    }
-
-    pub(super) fn holds(&self, heights_bytes: u64, codes_bytes: u64) -> bool {
-        self.heights.size() >= heights_bytes && self.codes.size() >= codes_bytes
-    }
-}
 
 /// A band whose codes are not back yet.
 struct InFlight {
@@ -206,6 +178,15 @@ fn fresh_nonce() -> u32 {
     NEXT.fetch_add(2, Ordering::Relaxed)
 }
 
+/// Copies rows of codes without their padding.
+fn read_rows(codes: &[u8], row_bytes: usize, rows: usize, target: &mut CodesMut<'_>) {
+    let target = target.bytes_mut();
+    let unpadded = target.len() / rows;
+    for (from, to) in codes.chunks_exact(row_bytes).zip(target.chunks_exact_mut(unpadded)) {
+        to.copy_from_slice(&from[..unpadded]);
+    }
+}
+
 /// Writes the rows of a band with its halo, each padded to `row_bytes`, and unmaps the buffer.
 fn write_rows(upload: &Buffer, band: &HeightBand<'_>, row_bytes: usize) -> Result<(), wgpu::MapRangeError> {
     fn write<T: bytemuck::Pod>(
@@ -230,14 +211,5 @@ fn write_rows(upload: &Buffer, band: &HeightBand<'_>, row_bytes: usize) -> Resul
         HeightBand::U8(band) => write(upload, band, row_bytes),
         HeightBand::U16(band) => write(upload, band, row_bytes),
         HeightBand::F32(band) => write(upload, band, row_bytes),
-    }
-}
-
-/// Copies rows of codes without their padding.
-fn read_rows(codes: &[u8], row_bytes: usize, rows: usize, target: &mut CodesMut<'_>) {
-    let target = target.bytes_mut();
-    let unpadded = target.len() / rows;
-    for (from, to) in codes.chunks_exact(row_bytes).zip(target.chunks_exact_mut(unpadded)) {
-        to.copy_from_slice(&from[..unpadded]);
     }
 }

@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn adler_is_as_published_and_joins() {
         assert_eq!(adler(b"Wikipedia"), 0x11e6_0398); // the example of its article
-        let bytes: Vec<u8> = (0..70_000u32).map(|i| (i * i >> 5) as u8).collect();
+        let bytes: Vec<u8> = (0..70_000u64).map(|i| ((i * i) >> 5) as u8).collect();
         for cut in [0, 1, 5552, 69_999, 70_000] {
             let (first, second) = bytes.split_at(cut);
             assert_eq!(adler_of_both(adler(first), adler(second), second.len() as u64), adler(&bytes), "{cut}");
