@@ -34,8 +34,10 @@ pub struct Baker {
 /// How a bake ran.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ran {
-    /// What baked it.
-    pub backend: String,
+    /// What baked it: `cpu` or `gpu`.
+    pub backend: &'static str,
+    /// Its device: threads and instruction set, or the adapter.
+    pub device: String,
     /// Why another backend failed before, if one did.
     pub fallback: Option<String>,
     /// Size of the map.
@@ -44,6 +46,13 @@ pub struct Ran {
     pub depth: HeightDepth,
     /// The scale that was used, and whether it is the one that was asked for.
     pub scale: AxisScale,
+}
+
+impl Ran {
+    /// What baked it, as [`Baker::name`].
+    pub fn name(&self) -> String {
+        crate::backend::name(self.backend, &self.device)
+    }
 }
 
 /// Maps up to this many bytes are held in memory if their last row is needed first; larger ones are read twice.
@@ -94,7 +103,7 @@ impl Baker {
 
     /// What runs: the backend and its device.
     pub fn name(&self) -> String {
-        self.backend.name()
+        crate::backend::name(self.backend.kind(), &self.backend.device())
     }
 
     /// Why this backend was chosen.
@@ -151,7 +160,7 @@ impl Baker {
         options: &NormalOptions,
         monitor: &Monitor,
     ) -> Result<Ran> {
-        let ((backend, plan), fallback) = self.run(|backend| {
+        let ((backend, device, plan), fallback) = self.run(|backend| {
             let source = open()?;
             let plan = NormalPlan::new(options, source.size(), source.depth())?;
             let sink = create(plan.size)?;
@@ -163,9 +172,9 @@ impl Baker {
             let mut sink = Monitored { sink: writer, width: plan.size.width(), monitor };
             stream(backend, &plan, source, order, &mut sink)?;
             sink.sink.finish()?;
-            Ok((backend.name(), plan))
+            Ok((backend.kind(), backend.device(), plan))
         })?;
-        Ok(Ran { backend, fallback, size: plan.size, depth: plan.depth, scale: plan.scale })
+        Ok(Ran { backend, device, fallback, size: plan.size, depth: plan.depth, scale: plan.scale })
     }
 
     /// Runs a job, and runs it again on the fallback if the backend's device fails; then it says why.
@@ -221,8 +230,12 @@ mod tests {
     struct Failing;
 
     impl Backend for Failing {
-        fn name(&self) -> String {
-            "failing".into()
+        fn kind(&self) -> &'static str {
+            "failing"
+        }
+
+        fn device(&self) -> String {
+            "device".into()
         }
 
         fn band_rows(&self, _: &NormalPlan) -> usize {
@@ -252,7 +265,7 @@ mod tests {
             Baker::reference().normal(&pyramid(), &options).unwrap()
         );
         let ((), why) = baker
-            .run(|backend| if backend.name() == "failing" { Err(Error::device("a", "b")) } else { Ok(()) })
+            .run(|backend| if backend.kind() == "failing" { Err(Error::device("a", "b")) } else { Ok(()) })
             .unwrap();
         assert_eq!(why.as_deref(), Some("a: b"));
     }

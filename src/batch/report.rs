@@ -79,7 +79,7 @@ pub struct FileReport {
     /// What was asked for, by the names of the command line.
     pub options: Options,
     /// What baked it: `cpu` or `gpu`.
-    pub backend: Option<String>,
+    pub backend: Option<&'static str>,
     /// The device and how it was used.
     pub adapter: Option<String>,
     /// Why this backend was chosen.
@@ -207,10 +207,6 @@ impl FileReport {
     fn new(job: &Job, outcome: &Outcome) -> Self {
         let result = FileResult::of(outcome);
         let ran = outcome.result.as_ref().ok();
-        let (backend, adapter) = ran.map_or((None, None), |ran| match ran.backend.split_once(", ") {
-            Some((backend, adapter)) => (Some(backend.to_owned()), Some(adapter.to_owned())),
-            None => (Some(ran.backend.clone()), None),
-        });
         let ratio =
             |part: i32, q: u32| crate::Rational::new(part.into(), q.into()).map_or(String::new(), |r| r.to_string());
         let scale = ran.map(|ran| ran.scale);
@@ -221,8 +217,8 @@ impl FileReport {
             error: job.failure(outcome),
             warnings: outcome.warnings.clone(),
             options: Options::new(&job.options, &job.read),
-            backend,
-            adapter,
+            backend: ran.map(|ran| ran.backend),
+            adapter: ran.map(|ran| ran.device.clone()),
             reason: job.baker.reason().to_owned(),
             fallback: ran.and_then(|ran| ran.fallback.clone()),
             width: ran.map(|ran| ran.size.width()),

@@ -51,7 +51,7 @@ pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
         format.convention,
         ran.scale,
         options.precision,
-        ran.backend,
+        ran.name(),
         job.baker.reason(),
         milliseconds(outcome.time),
         bytes(outcome.bytes_in),
@@ -93,7 +93,7 @@ pub fn summary(totals: &Totals, jobs: &[Job], outcomes: &[Outcome]) -> String {
     for (job, ran) in jobs.iter().zip(outcomes).filter_map(|(job, outcome)| Some((job, outcome.result.as_ref().ok()?)))
     {
         let reason = ran.fallback.as_deref().unwrap_or(job.baker.reason());
-        let place = format!("{} ({reason})", ran.backend);
+        let place = format!("{} ({reason})", ran.name());
         if !places.contains(&place) {
             places.push(place);
         }
