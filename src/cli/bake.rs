@@ -39,7 +39,7 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
 
     let report = Report::new(&jobs, &outcomes, time, &errors, config.as_ref().map(|config| config.path.as_path()));
     if !reporting.quiet {
-        file_table(&jobs, &outcomes).into_iter().for_each(put);
+        put(file_table(&jobs, &outcomes));
         put(summary(&report.totals, &jobs, &outcomes));
     }
     if let Some(path) = &reporting.report {

@@ -1,12 +1,14 @@
 //! Lines and tables.
 
 use comfy_table::{CellAlignment, Table, presets};
+use std::cmp::Reverse;
 use std::io::Write;
 use std::time::Duration;
 use texbake::Device;
 use texbake::batch::{FileResult, Job, Outcome, Totals};
 
-/// Longer folders get a table of what was not baked only.
+/// Longer folders get a table of what was not baked, and of the slowest.
+const SLOWEST: usize = 10;
 const TABLE_ROWS: usize = 40;
 
 /// A line on stderr. Nobody may be listening, which is no reason to stop.
@@ -59,8 +61,23 @@ pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
     ))
 }
 
-/// The files of a folder; of many only those that were not baked.
-pub fn file_table(jobs: &[Job], outcomes: &[Outcome]) -> Option<String> {
+/// The files of a folder; of many only those that were not baked, and the slowest.
+pub fn file_table(jobs: &[Job], outcomes: &[Outcome]) -> String {
+    let files = || jobs.iter().zip(outcomes);
+    if jobs.len() <= TABLE_ROWS {
+        return rows_of(files());
+    }
+    let (mut baked, unbaked): (Vec<_>, Vec<_>) = files().partition(|(_, outcome)| outcome.result.is_ok());
+    baked.sort_by_key(|(_, outcome)| Reverse(outcome.time));
+    baked.truncate(SLOWEST);
+    let what = match (unbaked.len(), baked.len()) {
+        (0, slowest) => format!("the {slowest} slowest"),
+        (unbaked, slowest) => format!("{unbaked} not baked, and the {slowest} slowest"),
+    };
+    format!("of {} files {what}:\n{}", jobs.len(), rows_of(unbaked.into_iter().chain(baked)))
+}
+
+fn rows_of<'a>(files: impl Iterator<Item = (&'a Job, &'a Outcome)>) -> String {
     let mut table = plain_table(&["file", "size", "depth", "ms", "result"], &[3]);
     let all = jobs.len() <= TABLE_ROWS;
     for (job, outcome) in jobs.iter().zip(outcomes).filter(|(_, outcome)| all || outcome.result.is_err()) {
@@ -78,7 +95,7 @@ pub fn file_table(jobs: &[Job], outcomes: &[Outcome]) -> Option<String> {
         };
         table.add_row([job.input.display().to_string(), size, depth, time, result]);
     }
-    (!table.is_empty()).then(|| table.trim_fmt())
+    table.trim_fmt()
 }
 
 /// One line about a run.

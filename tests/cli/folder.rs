@@ -143,19 +143,24 @@ fn a_folder_without_height_maps_is_an_error_that_says_what_they_are_called() {
 }
 
 #[test]
-fn many_files_give_a_table_of_failures_only() {
+fn many_files_give_a_table_of_failures_and_the_slowest() {
     let folder = Folder::new();
     for index in 0..41 {
         folder.grey8(&format!("tex/m{index}_h.png"), 2, 2, bumps8);
     }
     let run = folder.run(&["bake", "tex", "--out", "out"]).ends(0);
-    assert_eq!(run.stdout.lines().count(), 1, "{}", run.stdout);
+    let lines: Vec<&str> = run.stdout.lines().collect();
+    // What it is, the header, ten files and the summary.
+    assert_eq!((lines.len(), lines[0]), (13, "of 41 files the 10 slowest:"), "{}", run.stdout);
+    let milliseconds = |row: &&str| row.split_whitespace().rev().nth(1).unwrap().parse::<f64>().unwrap();
+    assert!(lines[2..12].iter().all(|row| row.ends_with("baked")), "{}", run.stdout);
+    assert!(lines[2..12].is_sorted_by(|a, b| milliseconds(a) >= milliseconds(b)), "{}", run.stdout);
     folder.file("tex/bad_h.png", "");
     let run = folder.run(&["bake", "tex", "--out", "out"]).ends(1);
     let lines: Vec<&str> = run.stdout.lines().collect();
-    assert_eq!(lines.len(), 3, "{}", run.stdout);
-    assert!(lines[1].contains("tex/bad_h.png") && lines[1].ends_with("failed"), "{}", lines[1]);
-    assert!(lines[2].starts_with("41 of 42 files baked, 1 failed; "), "{}", lines[2]);
+    assert_eq!((lines.len(), lines[0]), (14, "of 42 files 1 not baked, and the 10 slowest:"), "{}", run.stdout);
+    assert!(lines[2].contains("tex/bad_h.png") && lines[2].ends_with("failed"), "{}", lines[2]);
+    assert!(lines[13].starts_with("41 of 42 files baked, 1 failed; "), "{}", lines[13]);
 }
 
 #[cfg(unix)]
