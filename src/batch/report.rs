@@ -4,7 +4,7 @@ use super::{Job, Outcome};
 use crate::error::{Error, Result};
 use crate::io::ReadOptions;
 use crate::ops::normal::NormalOptions;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -15,7 +15,7 @@ pub struct Report {
     /// Version of texbake.
     pub version: &'static str,
     /// The settings file that was used.
-    pub settings: Option<PathBuf>,
+    pub settings: Option<String>,
     /// Sums over the files.
     pub totals: Totals,
     /// Folders that could not be searched, and why.
@@ -68,8 +68,10 @@ pub enum FileResult {
 pub struct FileReport {
     /// The height map file.
     pub input: PathBuf,
+    #[serde(serialize_with = "as_text")]
     /// The normal map file.
     pub output: PathBuf,
+    #[serde(serialize_with = "as_text")]
     /// What became of it.
     pub result: FileResult,
     /// Why it failed.
@@ -147,7 +149,7 @@ impl Report {
     pub fn new(jobs: &[Job], outcomes: &[Outcome], time: Duration, errors: &[Error], settings: Option<&Path>) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION"),
-            settings: settings.map(Path::to_owned),
+            settings: settings.map(|path| path.display().to_string()),
             totals: Totals::new(outcomes, time),
             errors: errors.iter().map(ToString::to_string).collect(),
             files: jobs.iter().zip(outcomes).map(|(job, outcome)| FileReport::new(job, outcome)).collect(),
@@ -250,4 +252,9 @@ impl Options {
             max_bytes: read.max_bytes,
         }
     }
+}
+
+/// A path as text; names that are no Unicode are no reason to lose a report.
+fn as_text<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&path.display())
 }

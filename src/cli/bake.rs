@@ -6,14 +6,16 @@ use super::exit::{Exit, Failure};
 use super::interruptible;
 use super::print::{file_table, put, say, summary};
 use super::progress::{Progress, Verbosity};
-use super::settings::open_baker;
+use super::settings::{Backend, open_baker};
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::thread::available_parallelism;
 use std::time::Instant;
-use texbake::batch::{Found, Job, Report, Search, check_targets, run};
+use texbake::batch::{Found, Job, Report, ReportFile, Search, run};
+use texbake::io::ReadOptions;
+use texbake::{Error, NormalOptions};
 
 pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     let reporting = &arguments.reporting;
@@ -56,7 +58,35 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
 fn search(arguments: &BakeArguments, config: Option<&Config>) -> Result<Search, Failure> {
     let given = Some(arguments.suffix.clone()).filter(|suffixes| !suffixes.is_empty());
     let suffixes = given.or_else(|| config.and_then(|config| config.suffixes.clone()));
-    Ok(suffixes.map_or_else(|| Ok(Search::default()), Search::new)?)
+    let search = suffixes.map_or_else(|| Ok(Search::default()), Search::new);
+    search.map_err(|error| blame(error, config.filter(|_| arguments.suffix.is_empty())))
+}
+
+/// An error of the settings file `config`, or else of the command line.
+fn blame(error: Error, config: Option<&Config>) -> Failure {
+    match (error, config) {
+        (error @ Error::Parameter { .. }, Some(config)) => {
+            Failure::Usage(format!("{}: {error}", config.path.display()))
+        }
+        (error, _) => error.into(),
+    }
+}
+
+/// What the settings of one file say.
+struct Chosen {
+    output: PathBuf,
+    device: (Backend, Option<String>),
+    options: NormalOptions,
+    read: ReadOptions,
+}
+
+impl Chosen {
+    fn new(settings: PerFile, map: &Found, out: &Path) -> texbake::Result<Self> {
+        let PerFile { name, format, settings } = settings;
+        let output = name.unwrap_or_default().output(map, out, format.as_deref().unwrap_or("png"))?;
+        let (device, options) = (settings.device()?, settings.normal(&output)?);
+        Ok(Self { output, device, options, read: settings.read() })
+    }
 }
 
 /// One job for each file, with its own settings; files that run at the same place share a baker.
@@ -65,9 +95,11 @@ fn jobs(arguments: &BakeArguments, config: Option<&Config>, found: &[Found]) -> 
     let mut jobs = Vec::new();
     for map in found {
         let below = config.map_or_else(PerFile::default, |config| config.settings(&relative(map)));
-        let PerFile { name, format, settings } = arguments.each.clone().or(&below);
-        let output = name.unwrap_or_default().output(map, &arguments.out, format.as_deref().unwrap_or("png"))?;
-        let device = settings.device()?;
+        let choose = |settings| Chosen::new(settings, map, &arguments.out);
+        let Chosen { output, device, options, read } = choose(arguments.each.clone().or(&below)).map_err(|error| {
+            // Where the command line alone would do, the mistake is in the file.
+            blame(error, config.filter(|_| choose(arguments.each.clone()).is_ok()))
+        })?;
         let baker = match bakers.get(&device) {
             Some(baker) => Arc::clone(baker),
             None => {
@@ -76,8 +108,7 @@ fn jobs(arguments: &BakeArguments, config: Option<&Config>, found: &[Found]) -> 
                 baker
             }
         };
-        let options = settings.normal(&output)?;
-        jobs.push(Job { input: map.path.clone(), output, read: settings.read(), options, baker });
+        jobs.push(Job { input: map.path.clone(), output, read, options, baker });
     }
     Ok(jobs)
 }

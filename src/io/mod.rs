@@ -19,7 +19,7 @@ mod srgb;
 mod tiff;
 
 pub use channel::Channel;
-pub use format::default_format;
+pub use format::{INPUT_EXTENSIONS, default_format};
 pub use raw::{RawKind, RawLayout};
 
 use crate::error::Result;

@@ -178,3 +178,17 @@ fn links_are_followed_but_not_in_circles() {
     symlink(folder.path("gone_height.png"), folder.path("tex/gone_height.png")).unwrap();
     folder.run(&["bake", "tex", "--out", "out"]).ends(1).says("failed tex/gone_height.png", &["No such file"]);
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn names_that_are_no_unicode_are_baked_and_reported() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let folder = Folder::new();
+    let map = folder.grey8("tex/plain_height.png", 6, 6, bumps8);
+    let name = folder.path("tex").join(OsStr::from_bytes(b"w\xe4nd_height.png"));
+    std::fs::rename(folder.path("tex/plain_height.png"), name).unwrap();
+    folder.run(&["bake", "tex", "--out", "out", "--report", "report.json"]).ends(0);
+    folder.assert_baked("out/w\u{fffd}nd_normal.png", &map, &NormalOptions::default());
+    assert_eq!(folder.json("report.json")["files"][0]["input"], "tex/w\u{fffd}nd_height.png");
+}
