@@ -1,8 +1,9 @@
 //! What was done, for other programs: JSON.
 
-use super::{Job, Outcome};
+use super::{Job, Outcome, targets};
 use crate::error::{Error, Result};
 use crate::io::ReadOptions;
+use crate::io::replace::Replacement;
 use crate::ops::normal::NormalOptions;
 use serde::{Serialize, Serializer};
 use std::io::Write;
@@ -67,11 +68,11 @@ pub enum FileResult {
 #[derive(Debug, Clone, Serialize)]
 pub struct FileReport {
     /// The height map file.
+    #[serde(serialize_with = "as_text")]
     pub input: PathBuf,
-    #[serde(serialize_with = "as_text")]
     /// The normal map file.
-    pub output: PathBuf,
     #[serde(serialize_with = "as_text")]
+    pub output: PathBuf,
     /// What became of it.
     pub result: FileResult,
     /// Why it failed.
@@ -96,8 +97,8 @@ pub struct FileReport {
     pub depth: Option<String>,
     /// The scale that was used, in texels.
     pub scale: Option<UsedScale>,
-    /// From opening the input to closing the output.
-    pub milliseconds: f64,
+    /// From opening the input to closing the output; null if the input was never opened.
+    pub milliseconds: Option<f64>,
     /// Bytes of the input.
     pub bytes_in: u64,
     /// Bytes of the output.
@@ -155,19 +156,35 @@ impl Report {
             files: jobs.iter().zip(outcomes).map(|(job, outcome)| FileReport::new(job, outcome)).collect(),
         }
     }
+}
 
-    /// Writes it as JSON; the file appears under its name when it is complete.
+/// The file that a report goes into. It is opened before the run, since a long one shall not end without its report.
+pub struct ReportFile {
+    path: PathBuf,
+    file: Replacement,
+}
+
+impl ReportFile {
+    /// Opens the file for a report about `jobs`; its folders are created, and it appears under its name when it is
+    /// complete.
+    ///
+    /// # Errors
+    /// [`Error::File`] if it is the input or output of a job, or cannot be replaced; [`Error::Io`].
+    pub fn create(path: &Path, jobs: &[Job]) -> Result<Self> {
+        targets::check_report(path, jobs)?;
+        std::fs::create_dir_all(path.parent().unwrap_or(Path::new(""))).map_err(Error::io(path))?;
+        Ok(Self { path: path.into(), file: Replacement::create(path)? })
+    }
+
+    /// Writes the report as JSON.
     ///
     /// # Errors
     /// [`Error::Io`] if the file cannot be written.
-    pub fn write(&self, path: &Path) -> Result<()> {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut file = tempfile::NamedTempFile::new_in(folder).map_err(Error::io(path))?;
-        serde_json::to_writer_pretty(&mut file, self).map_err(|error| Error::io(path)(error.into()))?;
-        file.write_all(b"\n").map_err(Error::io(path))?;
-        file.as_file().sync_all().map_err(Error::io(path))?;
-        file.persist(path).map_err(|error| Error::io(path)(error.error))?;
-        Ok(())
+    pub fn write(self, report: &Report) -> Result<()> {
+        let mut json = serde_json::to_vec_pretty(report).map_err(|error| Error::io(&self.path)(error.into()))?;
+        json.push(b'\n');
+        self.file.output()?.write_all(&json).map_err(Error::io(&self.path))?;
+        self.file.commit()
     }
 }
 
@@ -198,7 +215,7 @@ impl FileResult {
     pub fn of(outcome: &Outcome) -> Self {
         match &outcome.result {
             Ok(_) => Self::Baked,
-            Err(Error::Cancelled) if outcome.time.is_zero() => Self::NotBegun,
+            Err(Error::Cancelled) if outcome.time.is_none() => Self::NotBegun,
             Err(Error::Cancelled) => Self::Stopped,
             Err(_) => Self::Failed,
         }
@@ -227,7 +244,7 @@ impl FileReport {
             height: ran.map(|ran| ran.size.height()),
             depth: ran.map(|ran| ran.depth.to_string()),
             scale: scale.map(|s| UsedScale { x: ratio(s.x, s.q), y: ratio(s.y, s.q), exact: s.exact }),
-            milliseconds: (outcome.time.as_secs_f64() * 1e6).round() / 1e3,
+            milliseconds: outcome.time.map(|time| (time.as_secs_f64() * 1e6).round() / 1e3),
             bytes_in: outcome.bytes_in,
             bytes_out: outcome.bytes_out,
         }

@@ -9,7 +9,7 @@ use super::progress::{Progress, Verbosity};
 use super::settings::{Backend, open_baker};
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::available_parallelism;
 use std::time::Instant;
@@ -30,7 +30,7 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
         describe(config, &found);
     }
     let jobs = jobs(arguments, config.as_ref(), &found)?;
-    check_targets(&jobs, reporting.report.as_deref())?;
+    let report_file = reporting.report.as_deref().map(|path| ReportFile::create(path, &jobs)).transpose()?;
 
     let monitor = interruptible();
     let at_once = arguments.jobs.or(available_parallelism().ok()).map_or(1, NonZeroUsize::get);
@@ -44,8 +44,8 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
         put(file_table(&jobs, &outcomes));
         put(summary(&report.totals, &jobs, &outcomes));
     }
-    if let Some(path) = &reporting.report {
-        report.write(path)?;
+    if let Some(file) = report_file {
+        file.write(&report)?;
     }
     Ok(match report.totals {
         totals if totals.stopped + totals.not_begun > 0 => Exit::Interrupted,

@@ -3,13 +3,12 @@
 use comfy_table::{CellAlignment, Table, presets};
 use std::cmp::Reverse;
 use std::io::Write;
-use std::time::Duration;
 use texbake::Device;
 use texbake::batch::{FileResult, Job, Outcome, Totals};
 
 /// Longer folders get a table of what was not baked, and of the slowest.
-const SLOWEST: usize = 10;
 const TABLE_ROWS: usize = 40;
+const SLOWEST: usize = 10;
 
 /// A line on stderr. Nobody may be listening, which is no reason to stop.
 pub fn say(line: impl std::fmt::Display) {
@@ -30,7 +29,7 @@ pub fn file_line(place: &str, job: &Job, outcome: &Outcome) -> String {
             job.output.display(),
             ran.size,
             ran.depth,
-            milliseconds(outcome.time)
+            milliseconds(outcome)
         ),
         (Err(_), Some(reason)) => format!("[{place}] failed {reason}"),
         (Err(error), None) => format!("[{place}] stopped {}: {error}", job.input.display()),
@@ -41,7 +40,7 @@ pub fn file_line(place: &str, job: &Job, outcome: &Outcome) -> String {
 pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
     let ran = outcome.result.as_ref().ok()?;
     let (options, format) = (&job.options, job.options.format);
-    let rate = ran.size.texels() as f64 / 1e6 / outcome.time.as_secs_f64().max(1e-9);
+    let rate = ran.size.texels() as f64 / 1e6 / outcome.time.unwrap_or_default().as_secs_f64().max(1e-9);
     Some(format!(
         "{}: {}, {} to {} {} {} {}, scale {}, {}; {} ({}); {}, {rate:.1} Mtexel/s, {} in, {} out",
         job.output.display(),
@@ -55,7 +54,7 @@ pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
         options.precision,
         ran.name(),
         job.baker.reason(),
-        milliseconds(outcome.time),
+        milliseconds(outcome),
         bytes(outcome.bytes_in),
         bytes(outcome.bytes_out),
     ))
@@ -79,14 +78,12 @@ pub fn file_table(jobs: &[Job], outcomes: &[Outcome]) -> String {
 
 fn rows_of<'a>(files: impl Iterator<Item = (&'a Job, &'a Outcome)>) -> String {
     let mut table = plain_table(&["file", "size", "depth", "ms", "result"], &[3]);
-    let all = jobs.len() <= TABLE_ROWS;
-    for (job, outcome) in jobs.iter().zip(outcomes).filter(|(_, outcome)| all || outcome.result.is_err()) {
+    for (job, outcome) in files {
         let (size, depth) = match &outcome.result {
             Ok(ran) => (ran.size.to_string(), ran.depth.to_string()),
             Err(_) => Default::default(),
         };
-        let time =
-            if outcome.time.is_zero() { String::new() } else { format!("{:.1}", outcome.time.as_secs_f64() * 1e3) };
+        let time = outcome.time.map_or(String::new(), |time| format!("{:.1}", time.as_secs_f64() * 1e3));
         let result = match FileResult::of(outcome) {
             FileResult::Baked => "baked".to_owned(),
             FileResult::Failed => "failed".to_owned(),
@@ -154,8 +151,8 @@ fn plain_table(header: &[&str], numbers: &[usize]) -> Table {
     table
 }
 
-fn milliseconds(time: Duration) -> String {
-    format!("{:.1} ms", time.as_secs_f64() * 1e3)
+fn milliseconds(outcome: &Outcome) -> String {
+    format!("{:.1} ms", outcome.time.unwrap_or_default().as_secs_f64() * 1e3)
 }
 
 /// `12.3 MB`.

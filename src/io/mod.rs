@@ -12,7 +12,7 @@ mod limits;
 mod png;
 mod raster;
 mod raw;
-mod replace;
+pub(crate) mod replace;
 mod samples;
 mod sink;
 mod srgb;

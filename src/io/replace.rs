@@ -8,7 +8,7 @@ use std::sync::{Arc, OnceLock};
 use tempfile::NamedTempFile;
 
 /// A file beside its target, to take the target's place; dropped before that, it is removed.
-pub(super) struct Replacement {
+pub(crate) struct Replacement {
     temporary: NamedTempFile,
     target: PathBuf,
     failure: Failure,
@@ -20,7 +20,7 @@ type Failure = Arc<OnceLock<(ErrorKind, String)>>;
 /// The bytes of a [`Replacement`].
 ///
 /// Encoders write their last bytes when they are dropped, where an error goes unheard; this remembers it.
-pub(super) struct Output {
+pub(crate) struct Output {
     file: File,
     failure: Failure,
 }
