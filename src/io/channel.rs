@@ -1,6 +1,6 @@
 //! Which of a texel's samples is its height.
 
-use super::samples::{Layout, Opened, SampleRows, Samples, copy, len, part_mut};
+use super::samples::{Layout, NoData, Opened, SampleRows, Samples, copy, len, part_mut};
 use super::srgb::{self, SrgbTable};
 use super::{ColorSpace, ReadOptions};
 use crate::error::{Error, Result};
@@ -77,7 +77,7 @@ pub(super) struct HeightRows {
     layout: Layout,
     pick: Pick,
     srgb: Option<SrgbTable>,
-    no_data: Option<f32>,
+    no_data: Option<NoData>,
     /// Whether the file's samples are the heights; else a row of samples, and the heights picked from it, are held.
     in_place: bool,
     next_row: usize,
@@ -196,7 +196,8 @@ impl HeightRows {
 
     /// Fails on the first height that means "no data".
     fn check_data(&self, heights: Heights<'_>) -> Result<()> {
-        let Some(no_data) = self.no_data else { return Ok(()) };
+        let Some(NoData { height: no_data, text }) = &self.no_data else { return Ok(()) };
+        let no_data = *no_data;
         let found = match heights {
             Heights::U8(heights) => heights.iter().position(|&height| f32::from(height) == no_data),
             Heights::U16(heights) => heights.iter().position(|&height| f32::from(height) == no_data),
@@ -204,8 +205,12 @@ impl HeightRows {
         };
         let Some(i) = found else { return Ok(()) };
         let (x, y) = (i % self.layout.size.width(), self.next_row + i / self.layout.size.width());
-        let reason = format!("the texel at column {x}, row {y} holds no data: its value is the file's no-data value");
-        Err(Error::file(&self.path, reason, "fill the holes first, or crop the map"))
+        let reason = format!("the texel at column {x}, row {y} holds {text}, the file's no-data value");
+        let remedy = format!(
+            "fill the holes with gdal_fillnodata, crop the map, or, if {text} is a height, remove the mark with \
+             gdal_edit -unsetnodata"
+        );
+        Err(Error::file(&self.path, reason, remedy))
     }
 }
 

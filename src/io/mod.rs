@@ -6,8 +6,10 @@
 //! stands for half a file.
 
 mod channel;
+mod damage;
 mod exr;
 mod format;
+mod groups;
 mod limits;
 mod png;
 mod raster;
