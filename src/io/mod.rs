@@ -40,7 +40,7 @@ pub struct ReadOptions {
     pub color_space: ColorSpace,
     /// The layout of a file without a header.
     pub raw: Option<RawLayout>,
-    /// The most bytes that decoding one file may hold in memory at once, checked from its header.
+    /// The most bytes that decoding one file may hold in memory at once, checked from its header and its length.
     pub max_bytes: u64,
 }
 
