@@ -117,6 +117,11 @@ impl Pick {
 trait Texel: Copy + PartialEq + Display {
     /// Rec. 709 luma.
     fn luma(red: Self, green: Self, blue: Self) -> Self;
+
+    /// The sample, if it is NaN or infinite.
+    fn not_finite(self) -> Option<f32> {
+        None
+    }
 }
 
 /// Rec. 709 weights in units of 2^-16, which sum to 1 exactly, and half a unit: the nearest code, ties up.
@@ -139,6 +144,10 @@ impl Texel for u16 {
 impl Texel for f32 {
     fn luma(red: f32, green: f32, blue: f32) -> f32 {
         0.2126 * red + 0.7152 * green + 0.0722 * blue
+    }
+
+    fn not_finite(self) -> Option<f32> {
+        (!self.is_finite()).then_some(self)
     }
 }
 
@@ -284,10 +293,13 @@ fn pick_row<T: Texel>(
     Ok(())
 }
 
-/// A colour file was given where a grey one was expected.
+/// A colour file was given where a grey one was expected, or one of the colours is no number: NaN differs from itself.
 fn channels_differ<T: Texel>(path: &Path, column: usize, row: usize, colours: &[T]) -> Error {
     let values: Vec<String> = colours.iter().map(T::to_string).collect();
     let values = values.join(", ");
     let reason = format!("its channels differ, first at column {column}, row {row}: {values}");
     Error::file(path, reason, "choose the one that holds the heights with --channel r, g, b, a or luma")
+    if let Some(value) = colours.iter().find_map(|colour| colour.not_finite()) {
+        return Error::NotFinite { x: column, y: row, value };
+    }
 }
