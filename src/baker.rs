@@ -55,7 +55,7 @@ impl Ran {
     }
 }
 
-/// Maps up to this many bytes are held in memory if their last row is needed first; larger ones are read twice.
+/// Maps up to this many bytes are held in memory if their last row is needed first and far; larger ones are read twice.
 const HELD_BYTES: usize = 64 << 20;
 
 impl Baker {
@@ -149,6 +149,11 @@ impl Baker {
 
     /// Bakes rows from `open` into rows for `create` while they are read and written.
     ///
+    /// A few bands are in memory at a time, however high the map. The exception is a map whose edge wraps from top to
+    /// bottom and whose source cannot seek ([`RowSource::last_row_is_near`]: PNG), for a sink that cannot take row 0 last
+    /// ([`RowSink::takes_first_row_last`]: EXR): its heights are held if they are no more than 64 MiB, else decoded twice.
+    /// What the source itself holds comes on top: [`crate::io::open_heights`] decodes some formats whole.
+    ///
     /// Both may be called again if a GPU fails and the job moves to the CPU; no row of the failed try is kept.
     ///
     /// # Errors
@@ -198,7 +203,8 @@ fn stream(
 ) -> Result<()> {
     let band_rows = backend.band_rows(plan);
     let needs_last_row_first = plan.edges.y == Edge::Wrap && order == RowOrder::FromTop;
-    if needs_last_row_first && plan.size.texels() * plan.depth.bytes() <= HELD_BYTES {
+    let is_far = needs_last_row_first && !source.last_row_is_near();
+    if is_far && plan.size.texels() * plan.depth.bytes() <= HELD_BYTES {
         let map = read_map(source.as_mut())?;
         return backend.normal(plan, &mut MapBands::new(&map, plan.edges.y, band_rows), sink);
     }

@@ -261,6 +261,10 @@ impl RowSource for HeightRows {
         self.next_row = 0;
         Ok(())
     }
+
+    fn last_row_is_near(&self) -> bool {
+        self.samples.last_row_is_near()
+    }
 }
 
 /// Picks the heights of one row.
@@ -295,11 +299,11 @@ fn pick_row<T: Texel>(
 
 /// A colour file was given where a grey one was expected, or one of the colours is no number: NaN differs from itself.
 fn channels_differ<T: Texel>(path: &Path, column: usize, row: usize, colours: &[T]) -> Error {
+    if let Some(value) = colours.iter().find_map(|colour| colour.not_finite()) {
+        return Error::NotFinite { x: column, y: row, value };
+    }
     let values: Vec<String> = colours.iter().map(T::to_string).collect();
     let values = values.join(", ");
     let reason = format!("its channels differ, first at column {column}, row {row}: {values}");
     Error::file(path, reason, "choose the one that holds the heights with --channel r, g, b, a or luma")
-    if let Some(value) = colours.iter().find_map(|colour| colour.not_finite()) {
-        return Error::NotFinite { x: column, y: row, value };
-    }
 }
