@@ -72,7 +72,8 @@ impl Default for ReadOptions {
 ///
 /// The first bytes say which format it is, whatever its extension; TGA has no such bytes and goes by its extension.
 /// Heights keep the file's depth: 1, 2 and 4 bits become the 8-bit codes of the same heights, signed 16-bit integers
-/// become v + 32768 (the same slopes), and half and double floats become floats.
+/// become v + 32768 (the same slopes), and half and double floats become floats. The height 1 of 16-bit integers is
+/// 65535 units, so an elevation in metres has the depth 65535 m ([`crate::Scale::physical`]); that of floats is 1 unit.
 ///
 /// PNG, TIFF by strips or tiles, EXR and headerless files are read as the rows are asked for. Interlaced PNG and the
 /// other formats are decoded whole.
