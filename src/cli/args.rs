@@ -91,7 +91,7 @@ pub struct BakeArguments {
     #[arg(long, value_name = "FILE", help_heading = "Files")]
     pub config: Option<PathBuf>,
 
-    /// Files baked at the same time [default: the number of cores]
+    /// Files baked at the same time, each with its own rows in memory [default: one more than the cores]
     #[arg(short, long, value_name = "N", help_heading = "Where it runs")]
     pub jobs: Option<NonZeroUsize>,
 

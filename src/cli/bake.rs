@@ -33,7 +33,7 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     let report_file = reporting.report.as_deref().map(|path| ReportFile::create(path, &jobs)).transpose()?;
 
     let monitor = interruptible();
-    let at_once = arguments.jobs.or(available_parallelism().ok()).map_or(1, NonZeroUsize::get);
+    let at_once = arguments.jobs.map_or_else(usual_jobs, NonZeroUsize::get);
     let progress = Progress::new(&jobs, &monitor, if reporting.quiet { Verbosity::Quiet } else { Verbosity::Files });
     let start = Instant::now();
     let outcomes = progress.during(|| run(&jobs, at_once, &monitor, &|event| progress.watch(event)));
@@ -52,6 +52,12 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
         totals if totals.failed > 0 || !errors.is_empty() => Exit::Failed,
         _ => Exit::Success,
     })
+}
+
+/// One more than the cores: while the disk takes one file (its bytes are there before it has its name), another is
+/// baked. More jobs were no faster, and each holds its own rows.
+fn usual_jobs() -> usize {
+    1 + available_parallelism().map_or(1, NonZeroUsize::get)
 }
 
 /// The suffixes of the command line, else of the settings, else the usual ones.
