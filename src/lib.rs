@@ -28,7 +28,7 @@
 //! | --- | --- |
 //! | [`Baker::normal`] | the map and its normals |
 //! | [`Baker::normal_rows`], folders | a few bands of rows of each file that is being baked |
-//! | TIFF and EXR heights | besides, the strip, row of tiles or block that is being read: all of it if that is how the file is cut |
+//! | TIFF and EXR heights | besides, the strip, block or row of tiles that is being read, however large |
 //! | interlaced PNG, TGA, BMP, JPEG, WebP heights | besides, the whole map, decoded |
 //! | PNG heights that wrap, baked into EXR | besides, the whole map up to 64 MiB; larger ones are decoded twice |
 //!

@@ -27,8 +27,8 @@ pub trait RowSource: Send {
     /// As [`RowSource::read`].
     fn read_last_row(&mut self, row: HeightsMut<'_>) -> Result<()>;
 
-    /// Whether [`RowSource::read_last_row`] costs about as much as reading a row: a seek, not a whole decoding. Where it
-    /// is not, a map of moderate size is held in memory instead.
+    /// Whether [`RowSource::read_last_row`] costs about as much as reading a row: a seek, not a whole decoding. Where
+    /// it costs more, a map of moderate size is held in memory instead.
     fn last_row_is_near(&self) -> bool {
         false
     }

@@ -53,8 +53,8 @@ fn a_folder_is_reported_file_by_file() {
         files[0],
         json!({
             "input": "tex/a_height.png", "output": "out/a_normal.png", "result": "baked", "error": null,
-            "warnings": [], "options": options, "backend": "cpu", "adapter": "reference, 1 thread", "reason": "asked for",
-            "fallback": null, "width": 20, "height": 10, "depth": "u16",
+            "warnings": [], "options": options, "backend": "cpu", "adapter": "reference, 1 thread",
+            "reason": "asked for", "fallback": null, "width": 20, "height": 10, "depth": "u16",
             "scale": { "x": "1", "y": "1", "exact": true },
             "bytes_in": bytes("tex/a_height.png"), "bytes_out": bytes("out/a_normal.png"),
         })

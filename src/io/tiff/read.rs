@@ -78,8 +78,9 @@ pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
     let layout = Layout { size, depth, colours, alpha };
     // The decoder's chunk in the file's own type, beside the group of chunks that becomes heights.
     let chunk_samples = grid.chunk_width as u128 * grid.samples_of_chunk(layout) as u128;
-    let row_bytes = chunk_samples * u128::from(bits.div_ceil(8)) + layout.row_bytes() as u128;
-    limits::check(path, size, row_bytes * grid.chunk_rows as u128, options.max_bytes)?;
+    let chunk_bytes = chunk_samples * u128::from(bits.div_ceil(8)) * grid.chunk_rows as u128;
+    let group_bytes = layout.row_bytes() as u128 * grid.chunk_rows.min(size.height()) as u128;
+    limits::check(path, size, chunk_bytes + group_bytes, options.max_bytes)?;
     let no_data = no_data(path, &mut decoder, sample_type)?;
     let profile = decoder.find_tag(Tag::IccProfile).ok().flatten().and_then(|value| value.into_u8_vec().ok());
     let mut warnings = Vec::new();
