@@ -34,8 +34,10 @@ pub struct Baker {
 /// How a bake ran.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ran {
-    /// What baked it.
-    pub backend: String,
+    /// What baked it: `cpu` or `gpu`.
+    pub backend: &'static str,
+    /// Its device: threads and instruction set, or the adapter.
+    pub device: String,
     /// Why another backend failed before, if one did.
     pub fallback: Option<String>,
     /// Size of the map.
@@ -46,7 +48,19 @@ pub struct Ran {
     pub scale: AxisScale,
 }
 
-/// Maps up to this many bytes are held in memory if their last row is needed first; larger ones are read twice.
+impl Ran {
+    fn on(backend: &dyn Backend, plan: &NormalPlan) -> Self {
+        let (size, height_type, scale) = (plan.size, plan.height_type, plan.scale);
+        Self { backend: backend.kind(), device: backend.device(), fallback: None, size, height_type, scale }
+    }
+
+    /// What baked it, as [`Baker::name`].
+    pub fn name(&self) -> String {
+        crate::backend::name(self.backend, &self.device)
+    }
+}
+
+/// Maps up to this many bytes are held in memory if their last row is needed first and far; larger ones are read twice.
 const HELD_BYTES: usize = 64 << 20;
 
 impl Baker {
@@ -102,7 +116,7 @@ impl Baker {
 
     /// What runs: the backend and its device.
     pub fn name(&self) -> String {
-        self.backend.name()
+        crate::backend::name(self.backend.kind(), &self.backend.device())
     }
 
     /// Why this backend was chosen.
@@ -137,15 +151,20 @@ impl Baker {
 
     fn normal_of_plan(&self, heights: &HeightMap, plan: &NormalPlan, mut codes: CodesMut<'_>) -> Result<Ran> {
         let all = 0..codes.len();
-        let (backend, fallback) = self.run(|backend| {
+        self.run(|backend| {
             let mut bands = MapBands::new(heights, plan.edges.y, backend.map_band_rows(plan));
             backend.normal(plan, &mut bands, &mut MapSink::new(codes.slice(all.clone()), plan.row_codes()))?;
-            Ok(backend.name())
-        })?;
-        Ok(Ran::new(backend, fallback, plan))
+            Ok(Ran::on(backend, plan))
+        })
     }
 
     /// Bakes rows from `open` into rows for `create` while they are read and written.
+    ///
+    /// A few bands are in memory at a time, however high the map. The exception is a map whose edge wraps from top to
+    /// bottom and whose source cannot seek ([`RowSource::last_row_is_near`]: PNG), for a sink that cannot take row 0
+    /// last ([`RowSink::takes_first_row_last`]: EXR): its heights are held if they are no more than 64 MiB, else
+    /// decoded twice. What the source itself holds comes on top: [`crate::io::open_heights`] decodes some formats
+    /// whole.
     ///
     /// Both may be called again if a GPU fails and the job moves to the CPU; no row of the failed try is kept.
     ///
@@ -158,7 +177,7 @@ impl Baker {
         options: &NormalOptions,
         monitor: &Monitor,
     ) -> Result<Ran> {
-        let ((backend, plan), fallback) = self.run(|backend| {
+        self.run(|backend| {
             let source = open()?;
             let plan = NormalPlan::new(options, source.size(), source.height_type())?;
             let sink = create(plan.size)?;
@@ -167,28 +186,22 @@ impl Baker {
                 _ => RowOrder::FromTop,
             };
             let writer = CodeWriter::new(sink, plan.size, plan.format, order)?;
-            let mut sink = Monitored { sink: writer, width: plan.size.width(), monitor };
-            stream(backend, &plan, source, order, monitor, &mut sink)?;
-            sink.sink.finish()?;
-            Ok((backend.name(), plan))
-        })?;
-        Ok(Ran::new(backend, fallback, &plan))
+            let mut sink = Monitored { sink: writer, width: plan.size.width(), texels: 0, monitor };
+            // What a failed try has counted is baked again.
+            let streamed = stream(backend, &plan, source, order, monitor, &mut sink);
+            streamed.and_then(|()| sink.sink.finish()).inspect_err(|_| monitor.take_back(sink.texels))?;
+            Ok(Ran::on(backend, &plan))
+        })
     }
 
     /// Runs a job, and runs it again on the fallback if the backend's device fails; then it says why.
-    fn run<T>(&self, mut job: impl FnMut(&dyn Backend) -> Result<T>) -> Result<(T, Option<String>)> {
+    fn run(&self, mut job: impl FnMut(&dyn Backend) -> Result<Ran>) -> Result<Ran> {
         match (job(self.backend.as_ref()), &self.fallback) {
             (Err(Error::Device { adapter, reason }), Some(fallback)) => {
-                Ok((job(fallback.as_ref())?, Some(format!("{adapter}: {reason}"))))
+                Ok(Ran { fallback: Some(format!("{adapter}: {reason}")), ..job(fallback.as_ref())? })
             }
-            (result, _) => Ok((result?, None)),
+            (result, _) => result,
         }
-    }
-}
-
-impl Ran {
-    fn new(backend: String, fallback: Option<String>, plan: &NormalPlan) -> Self {
-        Self { backend, fallback, size: plan.size, height_type: plan.height_type, scale: plan.scale }
     }
 }
 
@@ -203,7 +216,8 @@ fn stream(
 ) -> Result<()> {
     let band_rows = backend.band_rows(plan);
     let needs_last_row_first = plan.edges.y == Edge::Wrap && order == RowOrder::FromTop;
-    if needs_last_row_first && plan.size.texels() * plan.height_type.bytes() <= HELD_BYTES {
+    let is_far = needs_last_row_first && !source.last_row_is_near();
+    if is_far && plan.size.texels() * plan.height_type.bytes() <= HELD_BYTES {
         let map = read_map_watched(source.as_mut(), monitor)?;
         return backend.normal(plan, &mut MapBands::new(&map, plan.edges.y, band_rows), sink);
     }
@@ -214,6 +228,8 @@ fn stream(
 struct Monitored<'a> {
     sink: CodeWriter,
     width: usize,
+    /// Counted so far.
+    texels: u64,
     monitor: &'a Monitor,
 }
 
@@ -221,7 +237,9 @@ impl CodeSink for Monitored<'_> {
     fn write(&mut self, rows: usize, fill: &mut dyn FnMut(&mut CodesMut<'_>) -> Result<()>) -> Result<()> {
         self.monitor.check()?;
         self.sink.write(rows, fill)?;
-        self.monitor.add((rows * self.width) as u64)
+        let texels = (rows * self.width) as u64;
+        self.texels += texels;
+        self.monitor.add(texels)
     }
 }
 
@@ -235,8 +253,12 @@ mod tests {
     struct Failing;
 
     impl Backend for Failing {
-        fn name(&self) -> String {
-            "failing".into()
+        fn kind(&self) -> &'static str {
+            "failing"
+        }
+
+        fn device(&self) -> String {
+            "device".into()
         }
 
         fn band_rows(&self, _: &NormalPlan) -> usize {
@@ -267,7 +289,7 @@ mod tests {
         );
         let mut codes = vec![0; 9 * 7 * 3];
         let ran = baker.normal_into(&pyramid(), &options, CodesMut::U8(&mut codes)).unwrap();
-        assert_eq!((ran.backend, ran.fallback), (Reference.name(), Some("failing: out of memory".into())));
+        assert_eq!((ran.name(), ran.fallback), (Baker::reference().name(), Some("failing: out of memory".into())));
     }
 
     #[test]

@@ -22,6 +22,16 @@
 //!   [`stream`] has the traits of its two ends.
 #![cfg_attr(feature = "gpu", doc = "- [`gpu::Hosted`] bakes on the caller's own wgpu device, without a readback.")]
 //!
+//! # What is held in memory
+//!
+//! | | |
+//! | --- | --- |
+//! | [`Baker::normal`] | the map and its normals |
+//! | [`Baker::normal_rows`], folders | a few bands of rows of each file that is being baked |
+//! | TIFF and EXR heights | besides, the strip, block or row of tiles that is being read, however large |
+//! | interlaced PNG, TGA, BMP, JPEG, WebP heights | besides, the whole map, decoded |
+//! | PNG heights that wrap, baked into EXR | besides, the whole map up to 64 MiB; larger ones are decoded twice |
+//!
 //! # What is computed
 //!
 //! A code H of B bits means the height h = H / (2^B - 1); a float is the height itself. With the scale s, the height

@@ -1,6 +1,7 @@
 //! Which files are height maps.
 
 use crate::error::{Error, Result};
+use crate::io::INPUT_EXTENSIONS;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use walkdir::WalkDir;
@@ -24,9 +25,6 @@ pub struct Found {
 pub struct Search {
     suffixes: Vec<String>,
 }
-
-/// Formats that may hold heights; the last three have no header.
-const EXTENSIONS: [&str; 12] = ["png", "tif", "tiff", "exr", "tga", "bmp", "jpg", "jpeg", "webp", "raw", "r16", "r32"];
 
 impl Default for Search {
     /// [`Search::SUFFIXES`].
@@ -91,11 +89,13 @@ impl Search {
 
     /// The file `path` below `root`, if its name says that it is a height map.
     fn height_map(&self, root: &Path, path: &Path) -> Option<Found> {
-        let extension = path.extension()?.to_str()?;
-        if !EXTENSIONS.iter().any(|known| known.eq_ignore_ascii_case(extension)) {
+        let extension = path.extension()?;
+        if !INPUT_EXTENSIONS.iter().any(|known| extension.eq_ignore_ascii_case(known)) {
             return None;
         }
-        let (stem, size) = self.split(path.file_stem()?.to_str()?)?;
+        // What is no Unicode becomes replacement characters in the output's name.
+        let stem = path.file_stem()?.to_string_lossy();
+        let (stem, size) = self.split(&stem)?;
         let folder = path.parent()?.strip_prefix(root).ok()?.to_owned();
         Some(Found { path: path.to_owned(), folder, stem: stem.to_owned(), size: size.to_owned() })
     }

@@ -1,5 +1,6 @@
 //! Files baked side by side.
 
+use super::targets;
 use crate::baker::{Baker, Ran};
 use crate::error::{Error, Result};
 use crate::io::{ReadOptions, create_normals, open_heights};
@@ -32,12 +33,13 @@ pub struct Job {
 /// What became of a job.
 #[derive(Debug)]
 pub struct Outcome {
-    /// How it ran; [`Error::Cancelled`] if it was stopped or never begun.
+    /// How it ran; [`Error::Cancelled`] if it was stopped or never begun, [`Error::File`] if its output would overwrite
+    /// an input, or is the output of another job too.
     pub result: Result<Ran>,
     /// What the user should know about the file.
     pub warnings: Vec<String>,
-    /// From opening the input to closing the output; zero if it was never begun.
-    pub time: Duration,
+    /// From opening the input to closing the output; `None` if the input was never opened.
+    pub time: Option<Duration>,
     /// Bytes of the input file.
     pub bytes_in: u64,
     /// Bytes of the output file; zero if there is none.
@@ -54,7 +56,7 @@ pub enum Event<'a> {
         /// Size of its map.
         size: Size,
     },
-    /// A job has ended; not sent for jobs that were never begun.
+    /// A job has ended, or was refused; not sent for jobs that an interrupt kept from their turn.
     Ended {
         /// Its place in the list of jobs.
         job: usize,
@@ -65,17 +67,22 @@ pub enum Event<'a> {
 
 /// Runs `jobs`, `at_once` of them at a time, in their order; one that fails does not stop the others.
 ///
+/// A job whose output would overwrite an input fails unopened, and so do all jobs that share one output.
+///
 /// Each is a stream of its own: its file is read, baked and written at the same time. `watch` is called from many
 /// threads. The outcomes come back in the order of the jobs.
 pub fn run(jobs: &[Job], at_once: usize, monitor: &Monitor, watch: &(dyn Fn(Event<'_>) + Sync)) -> Vec<Outcome> {
     let next = AtomicUsize::new(0);
-    let outcomes: Vec<OnceLock<Outcome>> = jobs.iter().map(|_| OnceLock::new()).collect();
+    let unopened = |error| OnceLock::from(Outcome::unopened(error));
+    let refusals = targets::refusals(jobs).into_iter();
+    let outcomes: Vec<OnceLock<Outcome>> =
+        refusals.map(|refusal| refusal.map_or_else(OnceLock::new, unopened)).collect();
     let work = || {
         while !monitor.is_cancelled() {
             let index = next.fetch_add(1, Relaxed);
             let Some(job) = jobs.get(index) else { break };
-            let outcome = job.run(monitor, &|size| watch(Event::Opened { job: index, size }));
-            watch(Event::Ended { job: index, outcome: outcomes[index].get_or_init(|| outcome) });
+            let run = || job.run(monitor, &|size| watch(Event::Opened { job: index, size }));
+            watch(Event::Ended { job: index, outcome: outcomes[index].get_or_init(run) });
         }
     };
     std::thread::scope(|scope| {
@@ -84,7 +91,10 @@ pub fn run(jobs: &[Job], at_once: usize, monitor: &Monitor, watch: &(dyn Fn(Even
         }
         work();
     });
-    outcomes.into_iter().map(|outcome| outcome.into_inner().unwrap_or_else(Outcome::not_begun)).collect()
+    outcomes
+        .into_iter()
+        .map(|outcome| outcome.into_inner().unwrap_or_else(|| Outcome::unopened(Error::Cancelled)))
+        .collect()
 }
 
 impl Job {
@@ -118,14 +128,13 @@ impl Job {
         warnings.extend(result.as_ref().ok().and_then(inexact_scale));
         let bytes = |path: &Path| std::fs::metadata(path).map_or(0, |file| file.len());
         let bytes_out = if result.is_ok() { bytes(&self.output) } else { 0 };
-        Outcome { result, warnings, time: start.elapsed(), bytes_in: bytes(&self.input), bytes_out }
+        Outcome { result, warnings, time: Some(start.elapsed()), bytes_in: bytes(&self.input), bytes_out }
     }
 }
 
 impl Outcome {
-    fn not_begun() -> Self {
-        let result = Err(Error::Cancelled);
-        Self { result, warnings: Vec::new(), time: Duration::ZERO, bytes_in: 0, bytes_out: 0 }
+    fn unopened(error: Error) -> Self {
+        Self { result: Err(error), warnings: Vec::new(), time: None, bytes_in: 0, bytes_out: 0 }
     }
 }
 

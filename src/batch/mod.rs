@@ -3,7 +3,7 @@
 //!
 //! ```no_run
 //! use std::sync::Arc;
-//! use texbake::batch::{Job, NameTemplate, Search, check_targets, run};
+//! use texbake::batch::{Job, NameTemplate, Search, run};
 //! use texbake::{Baker, NormalOptions, io::ReadOptions, stream::Monitor};
 //!
 //! let baker = Arc::new(Baker::auto());
@@ -14,7 +14,6 @@
 //!     Ok(Job { input: map.path.clone(), output, read, options, baker: baker.clone() })
 //! });
 //! let jobs: Vec<Job> = jobs.collect::<texbake::Result<_>>()?;
-//! check_targets(&jobs, None)?;
 //! for (job, outcome) in jobs.iter().zip(run(&jobs, 8, &Monitor::default(), &|_| ())) {
 //!     println!("{}: {:?}", job.input.display(), outcome.result);
 //! }
@@ -30,5 +29,4 @@ mod targets;
 pub use discovery::{Found, Search};
 pub use job::{Event, Job, Outcome, run};
 pub use naming::{NameTemplate, OUTPUT_EXTENSIONS};
-pub use report::{FileReport, FileResult, Options, Report, Totals, UsedScale};
-pub use targets::check_targets;
+pub use report::{FileReport, FileResult, Options, Report, ReportFile, Totals, UsedScale};

@@ -1,10 +1,11 @@
 //! What was done, for other programs: JSON.
 
-use super::{Job, Outcome};
+use super::{Job, Outcome, targets};
 use crate::error::{Error, Result};
 use crate::io::ReadOptions;
+use crate::io::replace::Replacement;
 use crate::ops::normal::NormalOptions;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -15,7 +16,7 @@ pub struct Report {
     /// Version of texbake.
     pub version: &'static str,
     /// The settings file that was used.
-    pub settings: Option<PathBuf>,
+    pub settings: Option<String>,
     /// Sums over the files.
     pub totals: Totals,
     /// Folders that could not be searched, and why.
@@ -67,8 +68,10 @@ pub enum FileResult {
 #[derive(Debug, Clone, Serialize)]
 pub struct FileReport {
     /// The height map file.
+    #[serde(serialize_with = "as_text")]
     pub input: PathBuf,
     /// The normal map file.
+    #[serde(serialize_with = "as_text")]
     pub output: PathBuf,
     /// What became of it.
     pub result: FileResult,
@@ -79,7 +82,7 @@ pub struct FileReport {
     /// What was asked for, by the names of the command line.
     pub options: Options,
     /// What baked it: `cpu` or `gpu`.
-    pub backend: Option<String>,
+    pub backend: Option<&'static str>,
     /// The device and how it was used.
     pub adapter: Option<String>,
     /// Why this backend was chosen.
@@ -94,8 +97,8 @@ pub struct FileReport {
     pub depth: Option<String>,
     /// The scale that was used, in texels.
     pub scale: Option<UsedScale>,
-    /// From opening the input to closing the output.
-    pub milliseconds: f64,
+    /// From opening the input to closing the output; null if the input was never opened.
+    pub milliseconds: Option<f64>,
     /// Bytes of the input.
     pub bytes_in: u64,
     /// Bytes of the output.
@@ -147,25 +150,41 @@ impl Report {
     pub fn new(jobs: &[Job], outcomes: &[Outcome], time: Duration, errors: &[Error], settings: Option<&Path>) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION"),
-            settings: settings.map(Path::to_owned),
+            settings: settings.map(|path| path.display().to_string()),
             totals: Totals::new(outcomes, time),
             errors: errors.iter().map(ToString::to_string).collect(),
             files: jobs.iter().zip(outcomes).map(|(job, outcome)| FileReport::new(job, outcome)).collect(),
         }
     }
+}
 
-    /// Writes it as JSON; the file appears under its name when it is complete.
+/// The file that a report goes into. It is opened before the run, since a long one shall not end without its report.
+pub struct ReportFile {
+    path: PathBuf,
+    file: Replacement,
+}
+
+impl ReportFile {
+    /// Opens the file for a report about `jobs`; its folders are created, and it appears under its name when it is
+    /// complete.
+    ///
+    /// # Errors
+    /// [`Error::File`] if it is the input or output of a job, or cannot be replaced; [`Error::Io`].
+    pub fn create(path: &Path, jobs: &[Job]) -> Result<Self> {
+        targets::check_report(path, jobs)?;
+        std::fs::create_dir_all(path.parent().unwrap_or(Path::new(""))).map_err(Error::io(path))?;
+        Ok(Self { path: path.into(), file: Replacement::create(path)? })
+    }
+
+    /// Writes the report as JSON.
     ///
     /// # Errors
     /// [`Error::Io`] if the file cannot be written.
-    pub fn write(&self, path: &Path) -> Result<()> {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut file = tempfile::NamedTempFile::new_in(folder).map_err(Error::io(path))?;
-        serde_json::to_writer_pretty(&mut file, self).map_err(|error| Error::io(path)(error.into()))?;
-        file.write_all(b"\n").map_err(Error::io(path))?;
-        file.as_file().sync_all().map_err(Error::io(path))?;
-        file.persist(path).map_err(|error| Error::io(path)(error.error))?;
-        Ok(())
+    pub fn write(self, report: &Report) -> Result<()> {
+        let mut json = serde_json::to_vec_pretty(report).map_err(|error| Error::io(&self.path)(error.into()))?;
+        json.push(b'\n');
+        self.file.output()?.write_all(&json).map_err(Error::io(&self.path))?;
+        self.file.commit()
     }
 }
 
@@ -196,7 +215,7 @@ impl FileResult {
     pub fn of(outcome: &Outcome) -> Self {
         match &outcome.result {
             Ok(_) => Self::Baked,
-            Err(Error::Cancelled) if outcome.time.is_zero() => Self::NotBegun,
+            Err(Error::Cancelled) if outcome.time.is_none() => Self::NotBegun,
             Err(Error::Cancelled) => Self::Stopped,
             Err(_) => Self::Failed,
         }
@@ -207,10 +226,6 @@ impl FileReport {
     fn new(job: &Job, outcome: &Outcome) -> Self {
         let result = FileResult::of(outcome);
         let ran = outcome.result.as_ref().ok();
-        let (backend, adapter) = ran.map_or((None, None), |ran| match ran.backend.split_once(", ") {
-            Some((backend, adapter)) => (Some(backend.to_owned()), Some(adapter.to_owned())),
-            None => (Some(ran.backend.clone()), None),
-        });
         let ratio =
             |part: i32, q: u32| crate::Rational::new(part.into(), q.into()).map_or(String::new(), |r| r.to_string());
         let scale = ran.map(|ran| ran.scale);
@@ -221,15 +236,15 @@ impl FileReport {
             error: job.failure(outcome),
             warnings: outcome.warnings.clone(),
             options: Options::new(&job.options, &job.read),
-            backend,
-            adapter,
+            backend: ran.map(|ran| ran.backend),
+            adapter: ran.map(|ran| ran.device.clone()),
             reason: job.baker.reason().to_owned(),
             fallback: ran.and_then(|ran| ran.fallback.clone()),
             width: ran.map(|ran| ran.size.width()),
             height: ran.map(|ran| ran.size.height()),
             depth: ran.map(|ran| ran.height_type.to_string()),
             scale: scale.map(|s| UsedScale { x: ratio(s.x, s.q), y: ratio(s.y, s.q), exact: s.exact }),
-            milliseconds: (outcome.time.as_secs_f64() * 1e6).round() / 1e3,
+            milliseconds: outcome.time.map(|time| (time.as_secs_f64() * 1e6).round() / 1e3),
             bytes_in: outcome.bytes_in,
             bytes_out: outcome.bytes_out,
         }
@@ -254,4 +269,9 @@ impl Options {
             max_bytes: read.max_bytes,
         }
     }
+}
+
+/// A path as text; names that are no Unicode are no reason to lose a report.
+fn as_text<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&path.display())
 }

@@ -1,58 +1,92 @@
-//! No output may overwrite an input, nor another output.
+//! No output may overwrite an input, nor another output; nor may the report.
 
 use super::Job;
 use crate::error::{Error, Result};
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
-/// Fails if the jobs cannot all run without harm: two of them have one output, or an output, or the report, is an
-/// input.
+const REMEDY: &str = "choose another output";
+
+/// Why each job must not run, or `None`: its output is an input, or the output of another job too.
 ///
-/// # Errors
-/// [`Error::File`] names the output and the inputs that are concerned.
-pub fn check_targets(jobs: &[Job], report: Option<&Path>) -> Result<()> {
-    let overwritten = "choose another output";
-    let mut outputs = HashMap::new();
-    for job in jobs {
-        if let Some(other) = outputs.insert(spelling(&job.output), &job.input) {
-            let reason = format!("both {} and {} would be baked into it", other.display(), job.input.display());
-            return Err(Error::file(&job.output, reason, "bake them into different folders, or change --name"));
-        }
+/// All jobs of a clash are refused, so that their order decides nothing.
+pub(super) fn refusals(jobs: &[Job]) -> Vec<Option<Error>> {
+    let inputs = inputs(jobs);
+    let places: Vec<PathBuf> = jobs.iter().map(|job| place(&job.output)).collect();
+    let mut of_place: HashMap<&Path, Vec<&Job>> = HashMap::new();
+    for (job, place) in jobs.iter().zip(&places) {
+        of_place.entry(place).or_default().push(job);
     }
-    let inputs: HashMap<_, _> = jobs.iter().filter_map(|job| Some((identity(&job.input)?, &job.input))).collect();
-    for job in jobs {
-        if let Some(input) = identity(&job.output).and_then(|output| inputs.get(&output)) {
+    let refusal = |(job, place): (&Job, &PathBuf)| {
+        if let Some(input) = identity(place).and_then(|output| inputs.get(&output)) {
             let reason = format!("the output of {} would overwrite this input", job.input.display());
-            return Err(Error::file(*input, reason, overwritten));
+            return Some(Error::file(*input, reason, REMEDY));
         }
-    }
-    if let Some(report) = report
-        && let Some(input) = identity(report).and_then(|report| inputs.get(&report))
-    {
-        return Err(Error::file(
-            report,
-            format!("the report would overwrite the input {}", input.display()),
-            overwritten,
-        ));
-    }
-    Ok(())
+        let other = of_place[place.as_path()].iter().find(|other| !std::ptr::eq(**other, job))?;
+        let reason = format!("both {} and {} would be baked into it", job.input.display(), other.input.display());
+        Some(Error::file(&job.output, reason, "bake them into different folders, or change --name"))
+    };
+    jobs.iter().zip(&places).map(refusal).collect()
 }
 
-/// A path as the file system compares it.
-fn spelling(path: &Path) -> PathBuf {
+/// Fails if the report would overwrite an input or an output.
+pub(super) fn check_report(report: &Path, jobs: &[Job]) -> Result<()> {
+    let refused = |what: &str, file: &Path| {
+        let reason = format!("the report would overwrite the {what} {}", file.display());
+        Err(Error::file(report, reason, "choose another name for the report"))
+    };
+    let place_of_report = place(report);
+    if let Some(input) = identity(&place_of_report).and_then(|report| inputs(jobs).remove(&report)) {
+        return refused("input", input);
+    }
+    match jobs.iter().find(|job| place(&job.output) == place_of_report) {
+        Some(job) => refused("output", &job.output),
+        None => Ok(()),
+    }
+}
+
+fn inputs(jobs: &[Job]) -> HashMap<Identity, &Path> {
+    jobs.iter().filter_map(|job| Some((identity(&job.input)?, job.input.as_path()))).collect()
+}
+
+/// Where a file is written: links are resolved as far as there is something, the rest is as the file system compares
+/// it.
+fn place(path: &Path) -> PathBuf {
     let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    if cfg!(any(windows, target_os = "macos")) { path.to_string_lossy().to_lowercase().into() } else { path }
+    let resolved = |ancestor: &Path| Some((ancestor.canonicalize().ok()?, path.strip_prefix(ancestor).ok()?));
+    let place = path.ancestors().find_map(resolved).map(|(existing, rest)| append(existing, rest));
+    let place = place.unwrap_or_else(|| path.clone());
+    if cfg!(any(windows, target_os = "macos")) { place.to_string_lossy().to_lowercase().into() } else { place }
 }
 
-/// What is the same for all names of one file, hard links included; `None` if there is no such file.
+/// A path below a folder in which nothing of it exists yet, and so no link.
+fn append(folder: PathBuf, below: &Path) -> PathBuf {
+    below.components().fold(folder, |mut path, part| {
+        match part {
+            Component::ParentDir => _ = path.pop(),
+            part => path.push(part),
+        }
+        path
+    })
+}
+
+/// What is the same for all names of one file, hard links included.
 #[cfg(unix)]
-fn identity(path: &Path) -> Option<(u64, u64)> {
+type Identity = (u64, u64);
+
+/// `None` if there is no such file.
+#[cfg(unix)]
+fn identity(path: &Path) -> Option<Identity> {
     use std::os::unix::fs::MetadataExt;
     std::fs::metadata(path).ok().map(|file| (file.dev(), file.ino()))
 }
 
-/// What is the same for all names of one file but hard links; `None` if there is no such file.
+/// What is the same for all names of one file but hard links.
 #[cfg(not(unix))]
-fn identity(path: &Path) -> Option<PathBuf> {
+type Identity = PathBuf;
+
+/// `None` if there is no such file.
+#[cfg(not(unix))]
+fn identity(path: &Path) -> Option<Identity> {
     path.canonicalize().ok()
 }

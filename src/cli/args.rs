@@ -35,6 +35,7 @@ Examples:
   texbake normal height.png -o normal.png --scale 24
   texbake normal dem.tif -o normal.exr --scale 3.5 --edge clamp --filter scharr --convention dx
   texbake normal wall.png -o normal.png --size 2.0x2.0 --depth 0.1 --bits 16
+  texbake normal srtm.tif -o normal.png --size 108000x108000 --depth 65535 --edge clamp   (16 bits, metres)
   texbake normal terrain.raw --raw 1025x1025:u16le -o normal.tif --edge clamp")]
 pub struct NormalArguments {
     /// Height map: PNG, TIFF, EXR, TGA, BMP, JPEG, WebP, or any file with --raw
@@ -90,7 +91,7 @@ pub struct BakeArguments {
     #[arg(long, value_name = "FILE", help_heading = "Files")]
     pub config: Option<PathBuf>,
 
-    /// Files baked at the same time [default: the number of cores]
+    /// Files baked at the same time, each with its own rows in memory [default: one more than the cores]
     #[arg(short, long, value_name = "N", help_heading = "Where it runs")]
     pub jobs: Option<NonZeroUsize>,
 

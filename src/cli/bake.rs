@@ -6,14 +6,16 @@ use super::exit::{Exit, Failure};
 use super::interruptible;
 use super::print::{file_table, put, say, summary};
 use super::progress::{Progress, Verbosity};
-use super::settings::open_baker;
+use super::settings::{Backend, open_baker};
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::available_parallelism;
 use std::time::Instant;
-use texbake::batch::{Found, Job, Report, Search, check_targets, run};
+use texbake::batch::{Found, Job, Report, ReportFile, Search, run};
+use texbake::io::ReadOptions;
+use texbake::{Error, NormalOptions};
 
 pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     let reporting = &arguments.reporting;
@@ -28,10 +30,10 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
         describe(config, &found);
     }
     let jobs = jobs(arguments, config.as_ref(), &found)?;
-    check_targets(&jobs, reporting.report.as_deref())?;
+    let report_file = reporting.report.as_deref().map(|path| ReportFile::create(path, &jobs)).transpose()?;
 
     let monitor = interruptible();
-    let at_once = arguments.jobs.or(available_parallelism().ok()).map_or(1, NonZeroUsize::get);
+    let at_once = arguments.jobs.map_or_else(usual_jobs, NonZeroUsize::get);
     let progress = Progress::new(&jobs, &monitor, if reporting.quiet { Verbosity::Quiet } else { Verbosity::Files });
     let start = Instant::now();
     let outcomes = progress.during(|| run(&jobs, at_once, &monitor, &|event| progress.watch(event)));
@@ -39,11 +41,11 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
 
     let report = Report::new(&jobs, &outcomes, time, &errors, config.as_ref().map(|config| config.path.as_path()));
     if !reporting.quiet {
-        file_table(&jobs, &outcomes).into_iter().for_each(put);
+        put(file_table(&jobs, &outcomes));
         put(summary(&report.totals, &jobs, &outcomes));
     }
-    if let Some(path) = &reporting.report {
-        report.write(path)?;
+    if let Some(file) = report_file {
+        file.write(&report)?;
     }
     Ok(match report.totals {
         totals if totals.stopped + totals.not_begun > 0 => Exit::Interrupted,
@@ -52,11 +54,45 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     })
 }
 
+/// One more than the cores: while the disk takes one file (its bytes are there before it has its name), another is
+/// baked. More jobs were no faster, and each holds its own rows.
+fn usual_jobs() -> usize {
+    1 + available_parallelism().map_or(1, NonZeroUsize::get)
+}
+
 /// The suffixes of the command line, else of the settings, else the usual ones.
 fn search(arguments: &BakeArguments, config: Option<&Config>) -> Result<Search, Failure> {
     let given = Some(arguments.suffix.clone()).filter(|suffixes| !suffixes.is_empty());
     let suffixes = given.or_else(|| config.and_then(|config| config.suffixes.clone()));
-    Ok(suffixes.map_or_else(|| Ok(Search::default()), Search::new)?)
+    let search = suffixes.map_or_else(|| Ok(Search::default()), Search::new);
+    search.map_err(|error| blame(error, config.filter(|_| arguments.suffix.is_empty())))
+}
+
+/// An error of the settings file `config`, or else of the command line.
+fn blame(error: Error, config: Option<&Config>) -> Failure {
+    match (error, config) {
+        (error @ Error::Parameter { .. }, Some(config)) => {
+            Failure::Usage(format!("{}: {error}", config.path.display()))
+        }
+        (error, _) => error.into(),
+    }
+}
+
+/// What the settings of one file say.
+struct Chosen {
+    output: PathBuf,
+    device: (Backend, Option<String>),
+    options: NormalOptions,
+    read: ReadOptions,
+}
+
+impl Chosen {
+    fn new(settings: PerFile, map: &Found, out: &Path) -> texbake::Result<Self> {
+        let PerFile { name, format, settings } = settings;
+        let output = name.unwrap_or_default().output(map, out, format.as_deref().unwrap_or("png"))?;
+        let (device, options) = (settings.device()?, settings.normal(&output)?);
+        Ok(Self { output, device, options, read: settings.read() })
+    }
 }
 
 /// One job for each file, with its own settings; files that run at the same place share a baker.
@@ -65,9 +101,11 @@ fn jobs(arguments: &BakeArguments, config: Option<&Config>, found: &[Found]) -> 
     let mut jobs = Vec::new();
     for map in found {
         let below = config.map_or_else(PerFile::default, |config| config.settings(&relative(map)));
-        let PerFile { name, format, settings } = arguments.each.clone().or(&below);
-        let output = name.unwrap_or_default().output(map, &arguments.out, format.as_deref().unwrap_or("png"))?;
-        let device = settings.device()?;
+        let choose = |settings| Chosen::new(settings, map, &arguments.out);
+        let Chosen { output, device, options, read } = choose(arguments.each.clone().or(&below)).map_err(|error| {
+            // Where the command line alone would do, the mistake is in the file.
+            blame(error, config.filter(|_| choose(arguments.each.clone()).is_ok()))
+        })?;
         let baker = match bakers.get(&device) {
             Some(baker) => Arc::clone(baker),
             None => {
@@ -76,8 +114,7 @@ fn jobs(arguments: &BakeArguments, config: Option<&Config>, found: &[Found]) -> 
                 baker
             }
         };
-        let options = settings.normal(&output)?;
-        jobs.push(Job { input: map.path.clone(), output, read: settings.read(), options, baker });
+        jobs.push(Job { input: map.path.clone(), output, read, options, baker });
     }
     Ok(jobs)
 }

@@ -8,7 +8,7 @@ use super::progress::{Progress, Verbosity};
 use super::settings::open_baker;
 use std::sync::Arc;
 use std::time::Instant;
-use texbake::batch::{Job, Report, check_targets, run};
+use texbake::batch::{Job, Report, ReportFile, run};
 
 pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
     let settings = &arguments.settings;
@@ -22,7 +22,7 @@ pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
         baker: Arc::new(open_baker(&device)?),
     }];
     let reporting = &arguments.reporting;
-    check_targets(&jobs, reporting.report.as_deref())?;
+    let report_file = reporting.report.as_deref().map(|path| ReportFile::create(path, &jobs)).transpose()?;
 
     let monitor = interruptible();
     let progress = Progress::new(&jobs, &monitor, if reporting.quiet { Verbosity::Quiet } else { Verbosity::Warnings });
@@ -34,8 +34,8 @@ pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
         jobs.iter().zip(&outcomes).filter_map(|(job, outcome)| bake_line(job, outcome)).for_each(say);
     }
     let report = Report::new(&jobs, &outcomes, time, &[], None);
-    if let Some(path) = &reporting.report {
-        report.write(path)?;
+    if let Some(file) = report_file {
+        file.write(&report)?;
     }
     Ok(match report.totals {
         totals if totals.baked == 1 => Exit::Success,

@@ -1,13 +1,14 @@
 //! Lines and tables.
 
 use comfy_table::{CellAlignment, Table, presets};
+use std::cmp::Reverse;
 use std::io::Write;
-use std::time::Duration;
 use texbake::Device;
 use texbake::batch::{FileResult, Job, Outcome, Totals};
 
-/// Longer folders get a table of what was not baked only.
+/// Longer folders get a table of what was not baked, and of the slowest.
 const TABLE_ROWS: usize = 40;
+const SLOWEST: usize = 10;
 
 /// A line on stderr. Nobody may be listening, which is no reason to stop.
 pub fn say(line: impl std::fmt::Display) {
@@ -28,7 +29,7 @@ pub fn file_line(place: &str, job: &Job, outcome: &Outcome) -> String {
             job.output.display(),
             ran.size,
             ran.height_type,
-            milliseconds(outcome.time)
+            milliseconds(outcome)
         ),
         (Err(_), Some(reason)) => format!("[{place}] failed {reason}"),
         (Err(error), None) => format!("[{place}] stopped {}: {error}", job.input.display()),
@@ -39,7 +40,7 @@ pub fn file_line(place: &str, job: &Job, outcome: &Outcome) -> String {
 pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
     let ran = outcome.result.as_ref().ok()?;
     let (options, format) = (&job.options, job.options.format);
-    let rate = ran.size.texels() as f64 / 1e6 / outcome.time.as_secs_f64().max(1e-9);
+    let rate = ran.size.texels() as f64 / 1e6 / outcome.time.unwrap_or_default().as_secs_f64().max(1e-9);
     Some(format!(
         "{}: {}, {} to {} {} {} {}, scale {}, {}; {} ({}); {}, {rate:.1} Mtexel/s, {} in, {} out",
         job.output.display(),
@@ -51,25 +52,38 @@ pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
         format.convention,
         ran.scale,
         options.precision,
-        ran.backend,
+        ran.name(),
         job.baker.reason(),
-        milliseconds(outcome.time),
+        milliseconds(outcome),
         bytes(outcome.bytes_in),
         bytes(outcome.bytes_out),
     ))
 }
 
-/// The files of a folder; of many only those that were not baked.
-pub fn file_table(jobs: &[Job], outcomes: &[Outcome]) -> Option<String> {
+/// The files of a folder; of many only those that were not baked, and the slowest.
+pub fn file_table(jobs: &[Job], outcomes: &[Outcome]) -> String {
+    let files = || jobs.iter().zip(outcomes);
+    if jobs.len() <= TABLE_ROWS {
+        return rows_of(files());
+    }
+    let (mut baked, unbaked): (Vec<_>, Vec<_>) = files().partition(|(_, outcome)| outcome.result.is_ok());
+    baked.sort_by_key(|(_, outcome)| Reverse(outcome.time));
+    baked.truncate(SLOWEST);
+    let what = match (unbaked.len(), baked.len()) {
+        (0, slowest) => format!("the {slowest} slowest"),
+        (unbaked, slowest) => format!("{unbaked} not baked, and the {slowest} slowest"),
+    };
+    format!("of {} files {what}:\n{}", jobs.len(), rows_of(unbaked.into_iter().chain(baked)))
+}
+
+fn rows_of<'a>(files: impl Iterator<Item = (&'a Job, &'a Outcome)>) -> String {
     let mut table = plain_table(&["file", "size", "depth", "ms", "result"], &[3]);
-    let all = jobs.len() <= TABLE_ROWS;
-    for (job, outcome) in jobs.iter().zip(outcomes).filter(|(_, outcome)| all || outcome.result.is_err()) {
+    for (job, outcome) in files {
         let (size, depth) = match &outcome.result {
             Ok(ran) => (ran.size.to_string(), ran.height_type.to_string()),
             Err(_) => Default::default(),
         };
-        let time =
-            if outcome.time.is_zero() { String::new() } else { format!("{:.1}", outcome.time.as_secs_f64() * 1e3) };
+        let time = outcome.time.map_or(String::new(), |time| format!("{:.1}", time.as_secs_f64() * 1e3));
         let result = match FileResult::of(outcome) {
             FileResult::Baked => "baked".to_owned(),
             FileResult::Failed => "failed".to_owned(),
@@ -78,7 +92,7 @@ pub fn file_table(jobs: &[Job], outcomes: &[Outcome]) -> Option<String> {
         };
         table.add_row([job.input.display().to_string(), size, depth, time, result]);
     }
-    (!table.is_empty()).then(|| table.trim_fmt())
+    table.trim_fmt()
 }
 
 /// One line about a run.
@@ -93,7 +107,7 @@ pub fn summary(totals: &Totals, jobs: &[Job], outcomes: &[Outcome]) -> String {
     for (job, ran) in jobs.iter().zip(outcomes).filter_map(|(job, outcome)| Some((job, outcome.result.as_ref().ok()?)))
     {
         let reason = ran.fallback.as_deref().unwrap_or(job.baker.reason());
-        let place = format!("{} ({reason})", ran.backend);
+        let place = format!("{} ({reason})", ran.name());
         if !places.contains(&place) {
             places.push(place);
         }
@@ -137,8 +151,8 @@ fn plain_table(header: &[&str], numbers: &[usize]) -> Table {
     table
 }
 
-fn milliseconds(time: Duration) -> String {
-    format!("{:.1} ms", time.as_secs_f64() * 1e3)
+fn milliseconds(outcome: &Outcome) -> String {
+    format!("{:.1} ms", outcome.time.unwrap_or_default().as_secs_f64() * 1e3)
 }
 
 /// `12.3 MB`.

@@ -14,7 +14,8 @@ use texbake::{
 /// What was set; `None` leaves it to the next source, and at last to the default.
 #[derive(Args, Debug, Clone, Default, PartialEq)]
 pub struct Settings {
-    /// Height of white in widths of one texel: 24, 0.35, 7/3; negative for depth maps [default: 1]
+    /// Height of white (the code 255 or 65535, or the float 1) in widths of one texel: 24, 0.35, 7/3; negative for
+    /// depth maps [default: 1]
     #[arg(long, value_name = "NUMBER", value_parser = value::<Rational>, allow_hyphen_values = true)]
     #[arg(help_heading = SLOPE, conflicts_with_all = ["size", "depth"])]
     pub scale: Option<Rational>,
@@ -23,7 +24,7 @@ pub struct Settings {
     #[arg(long, value_name = "WxH", value_parser = value::<Extent>, help_heading = SLOPE)]
     pub size: Option<Extent>,
 
-    /// Height of white in the unit of --size
+    /// Height of white in the unit of --size: 65535 for 16-bit elevation in metres, 1 for floats in metres
     #[arg(long, value_name = "NUMBER", value_parser = value::<Rational>, allow_hyphen_values = true)]
     #[arg(help_heading = SLOPE)]
     pub depth: Option<Rational>,

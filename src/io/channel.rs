@@ -1,6 +1,6 @@
 //! Which of a texel's samples is its height.
 
-use super::samples::{Layout, Opened, SampleRows, Samples, copy, len, part_mut};
+use super::samples::{Layout, NoData, Opened, SampleRows, Samples, copy, len, part_mut};
 use super::srgb::{self, SrgbTable};
 use super::{ColorSpace, ReadOptions};
 use crate::error::{Error, Result};
@@ -77,7 +77,7 @@ pub(super) struct HeightRows {
     layout: Layout,
     pick: Pick,
     srgb: Option<SrgbTable>,
-    no_data: Option<f32>,
+    no_data: Option<NoData>,
     /// Whether the file's samples are the heights; else a row of samples, and the heights picked from it, are held.
     in_place: bool,
     next_row: usize,
@@ -117,6 +117,11 @@ impl Pick {
 trait Texel: Copy + PartialEq + Display {
     /// Rec. 709 luma.
     fn luma(red: Self, green: Self, blue: Self) -> Self;
+
+    /// The sample, if it is NaN or infinite.
+    fn not_finite(self) -> Option<f32> {
+        None
+    }
 }
 
 /// Rec. 709 weights in units of 2^-16, which sum to 1 exactly, and half a unit: the nearest code, ties up.
@@ -139,6 +144,10 @@ impl Texel for u16 {
 impl Texel for f32 {
     fn luma(red: f32, green: f32, blue: f32) -> f32 {
         0.2126 * red + 0.7152 * green + 0.0722 * blue
+    }
+
+    fn not_finite(self) -> Option<f32> {
+        (!self.is_finite()).then_some(self)
     }
 }
 
@@ -196,7 +205,8 @@ impl HeightRows {
 
     /// Fails on the first height that means "no data".
     fn check_data(&self, heights: Heights<'_>) -> Result<()> {
-        let Some(no_data) = self.no_data else { return Ok(()) };
+        let Some(NoData { height: no_data, text }) = &self.no_data else { return Ok(()) };
+        let no_data = *no_data;
         let found = match heights {
             Heights::U8(heights) => heights.iter().position(|&height| f32::from(height) == no_data),
             Heights::U16(heights) => heights.iter().position(|&height| f32::from(height) == no_data),
@@ -204,8 +214,12 @@ impl HeightRows {
         };
         let Some(i) = found else { return Ok(()) };
         let (x, y) = (i % self.layout.size.width(), self.next_row + i / self.layout.size.width());
-        let reason = format!("the texel at column {x}, row {y} holds no data: its value is the file's no-data value");
-        Err(Error::file(&self.path, reason, "fill the holes first, or crop the map"))
+        let reason = format!("the texel at column {x}, row {y} holds {text}, the file's no-data value");
+        let remedy = format!(
+            "fill the holes with gdal_fillnodata, crop the map, or, if {text} is a height, remove the mark with \
+             gdal_edit -unsetnodata"
+        );
+        Err(Error::file(&self.path, reason, remedy))
     }
 }
 
@@ -247,6 +261,10 @@ impl RowSource for HeightRows {
         self.next_row = 0;
         Ok(())
     }
+
+    fn last_row_is_near(&self) -> bool {
+        self.samples.last_row_is_near()
+    }
 }
 
 /// Picks the heights of one row.
@@ -279,8 +297,11 @@ fn pick_row<T: Texel>(
     Ok(())
 }
 
-/// A colour file was given where a grey one was expected.
+/// A colour file was given where a grey one was expected, or one of the colours is no number: NaN differs from itself.
 fn channels_differ<T: Texel>(path: &Path, column: usize, row: usize, colours: &[T]) -> Error {
+    if let Some(value) = colours.iter().find_map(|colour| colour.not_finite()) {
+        return Error::NotFinite { x: column, y: row, value };
+    }
     let values: Vec<String> = colours.iter().map(T::to_string).collect();
     let values = values.join(", ");
     let reason = format!("its channels differ, first at column {column}, row {row}: {values}");

@@ -25,6 +25,10 @@ pub(super) enum OutputFormat {
     Exr,
 }
 
+/// The usual extensions of the formats that are read, in lower case; the last three are those of headerless files.
+pub const INPUT_EXTENSIONS: [&str; 12] =
+    ["png", "tif", "tiff", "exr", "tga", "bmp", "jpg", "jpeg", "webp", "raw", "r16", "r32"];
+
 const KNOWN_INPUTS: &str = "texbake reads PNG, TIFF, EXR, TGA, BMP, JPEG and WebP, and headerless files with --raw";
 const KNOWN_OUTPUTS: &str = "texbake writes .png, .tif, .tiff and .exr";
 

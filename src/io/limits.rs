@@ -27,6 +27,15 @@ pub(super) fn check(path: &Path, size: Size, bytes: u128, limit: u64) -> Result<
     Err(Error::TooLarge { path: path.into(), width, height, bytes, limit })
 }
 
+/// Fails if the `stored` bytes of a file, which its decoder holds, are above `limit`.
+pub(super) fn check_stored(path: &Path, stored: u64, limit: u64) -> Result<()> {
+    if stored <= limit {
+        return Ok(());
+    }
+    let reason = format!("its decoder would hold its {stored} bytes, above the limit of {limit}");
+    Err(Error::file(path, reason, "raise it with --max-bytes, or convert the file to PNG"))
+}
+
 /// Fails if the whole map does not fit the limit.
 pub(super) fn check_map(path: &Path, size: Size, height_type: HeightType, limit: u64) -> Result<()> {
     check(path, size, size.texels() as u128 * height_type.bytes() as u128, limit)

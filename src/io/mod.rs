@@ -6,20 +6,22 @@
 //! stands for half a file.
 
 mod channel;
+mod damage;
 mod exr;
 mod format;
+mod groups;
 mod limits;
 mod png;
 mod raster;
 mod raw;
-mod replace;
+pub(crate) mod replace;
 mod samples;
 mod sink;
 mod srgb;
 mod tiff;
 
 pub use channel::Channel;
-pub use format::default_format;
+pub use format::{INPUT_EXTENSIONS, default_format};
 pub use raw::{RawKind, RawLayout};
 
 use crate::error::Result;
@@ -38,7 +40,7 @@ pub struct ReadOptions {
     pub color_space: ColorSpace,
     /// The layout of a file without a header.
     pub raw: Option<RawLayout>,
-    /// The most bytes that decoding one file may hold in memory at once, checked from its header.
+    /// The most bytes that decoding one file may hold in memory at once, checked from its header and its length.
     pub max_bytes: u64,
 }
 
@@ -70,7 +72,8 @@ impl Default for ReadOptions {
 ///
 /// The first bytes say which format it is, whatever its extension; TGA has no such bytes and goes by its extension.
 /// Heights keep the file's depth: 1, 2 and 4 bits become the 8-bit codes of the same heights, signed 16-bit integers
-/// become v + 32768 (the same slopes), and half and double floats become floats.
+/// become v + 32768 (the same slopes), and half and double floats become floats. The height 1 of 16-bit integers is
+/// 65535 units, so an elevation in metres has the depth 65535 m ([`crate::Scale::physical`]); that of floats is 1 unit.
 ///
 /// PNG, TIFF by strips or tiles, EXR and headerless files are read as the rows are asked for. Interlaced PNG and the
 /// other formats are decoded whole.

@@ -1,21 +1,29 @@
 //! TGA, BMP, JPEG and WebP: 8-bit formats that are decoded whole.
 
+use super::damage::{damaged, truncated};
 use super::samples::{DecodedWhole, Layout, Opened, Samples};
 use super::{ReadOptions, limits, srgb};
 use crate::error::{Error, Result};
 use crate::map::HeightType;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
-use std::io::{Cursor, ErrorKind};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, ErrorKind, Seek};
 use std::path::Path;
 
 /// Opens and decodes a file.
 pub(super) fn open(path: &Path, format: ImageFormat, options: &ReadOptions) -> Result<Opened> {
-    let stored = std::fs::read(path).map_err(Error::io(path))?;
-    if format == ImageFormat::Jpeg && !jpeg_has_end(&stored) {
+    let file = File::open(path).map_err(Error::io(path))?;
+    // The decoders of these two hold the stored bytes, and read them before anything else can be asked.
+    let is_held = matches!(format, ImageFormat::Jpeg | ImageFormat::WebP);
+    let held = if is_held { file.metadata().map_err(Error::io(path))?.len() } else { 0 };
+    limits::check_stored(path, held, options.max_bytes)?;
+    let mut file = BufReader::new(file);
+    if format == ImageFormat::Jpeg && !jpeg_has_end(&mut file).map_err(Error::io(path))? {
         // The decoder would fill what is missing with grey.
-        return Err(Error::file(path, TRUNCATED, "copy or export it again"));
+        return Err(truncated(path));
     }
-    let mut reader = ImageReader::with_format(Cursor::new(stored), format);
+    file.rewind().map_err(Error::io(path))?;
+    let mut reader = ImageReader::with_format(file, format);
     let mut decoder_limits = Limits::no_limits();
     decoder_limits.max_alloc = Some(options.max_bytes);
     reader.limits(decoder_limits);
@@ -23,7 +31,7 @@ pub(super) fn open(path: &Path, format: ImageFormat, options: &ReadOptions) -> R
 
     let (width, height) = decoder.dimensions();
     let size = limits::size(path, width.into(), height.into())?;
-    limits::check(path, size, decoder.total_bytes().into(), options.max_bytes)?;
+    limits::check(path, size, u128::from(held) + u128::from(decoder.total_bytes()), options.max_bytes)?;
     let (colours, alpha) = match decoder.color_type() {
         ColorType::L8 => (1, false),
         ColorType::La8 => (1, true),
@@ -38,7 +46,7 @@ pub(super) fn open(path: &Path, format: ImageFormat, options: &ReadOptions) -> R
     let profile = decoder.icc_profile().unwrap_or_default().unwrap_or_default();
     let mut samples = vec![0; layout.row_bytes() * size.height()];
     if decoder.total_bytes() != samples.len() as u64 {
-        return Err(Error::file(path, "its rows do not have the length that its header says", DAMAGED));
+        return Err(damaged(path, "its rows do not have the length that its header says"));
     }
     decoder.read_image(&mut samples).map_err(reason(path))?;
     let whole = DecodedWhole::new(layout, Samples::U8(samples));
@@ -46,23 +54,33 @@ pub(super) fn open(path: &Path, format: ImageFormat, options: &ReadOptions) -> R
 }
 
 /// Whether an end-of-image marker follows the last start-of-scan marker; coded data holds neither (ITU T.81, B.1.1.5).
-fn jpeg_has_end(stored: &[u8]) -> bool {
-    let position = |marker: [u8; 2]| stored.windows(2).rposition(|pair| pair == marker);
-    position([0xff, 0xda]).is_some_and(|scan| position([0xff, 0xd9]).is_some_and(|end| end > scan))
+fn jpeg_has_end(file: &mut impl BufRead) -> io::Result<bool> {
+    let (mut previous, mut has_scan, mut has_end) = (0, false, false);
+    loop {
+        let bytes = file.fill_buf()?;
+        for byte in bytes {
+            match [previous, *byte] {
+                [0xff, 0xda] => (has_scan, has_end) = (true, false),
+                [0xff, 0xd9] => has_end = has_scan,
+                _ => (),
+            }
+            previous = *byte;
+        }
+        let count = bytes.len();
+        if count == 0 {
+            return Ok(has_end);
+        }
+        file.consume(count);
+    }
 }
-
-const TRUNCATED: &str = "the file ends before its last row: it is truncated";
-const DAMAGED: &str = "it is damaged; copy or export it again";
 
 /// The decoder's reason, with the file and the way out.
 fn reason(path: &Path) -> impl FnOnce(ImageError) -> Error + '_ {
     move |error| match error {
-        ImageError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
-            Error::file(path, TRUNCATED, "copy or export it again")
-        }
+        ImageError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => truncated(path),
         ImageError::IoError(error) => Error::io(path)(error),
         ImageError::Limits(error) => Error::file(path, error, "raise the limit with --max-bytes"),
         ImageError::Unsupported(error) => Error::file(path, error, "convert it to PNG"),
-        error => Error::file(path, error, DAMAGED),
+        error => damaged(path, error),
     }
 }

@@ -137,4 +137,8 @@ impl SampleRows for RawRows {
         self.file.seek(SeekFrom::Start(offset)).map_err(Error::io(&self.path))?;
         Ok(())
     }
+
+    fn last_row_is_near(&self) -> bool {
+        true
+    }
 }

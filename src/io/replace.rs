@@ -8,19 +8,19 @@ use std::sync::{Arc, OnceLock};
 use tempfile::NamedTempFile;
 
 /// A file beside its target, to take the target's place; dropped before that, it is removed.
-pub(super) struct Replacement {
+pub(crate) struct Replacement {
     temporary: NamedTempFile,
     target: PathBuf,
     failure: Failure,
 }
 
-/// The first failure of a write, for [`Replacement::commit`].
+/// The first failure of a write, for [`Replacement::check`].
 type Failure = Arc<OnceLock<(ErrorKind, String)>>;
 
 /// The bytes of a [`Replacement`].
 ///
-/// Encoders write their last bytes when they are dropped, where an error goes unheard; this remembers it.
-pub(super) struct Output {
+/// Encoders write where an error goes unheard, or repeat it in words of their own; this remembers it.
+pub(crate) struct Output {
     file: File,
     failure: Failure,
 }
@@ -70,11 +70,21 @@ impl Replacement {
         Ok(Output { file, failure: self.failure.clone() })
     }
 
+    /// As [`Replacement::output`], into another file: a device that is always full, say.
+    #[cfg(test)]
+    pub fn output_into(&self, file: File) -> Output {
+        Output { file, failure: self.failure.clone() }
+    }
+
+    /// Fails as the first write that failed, whatever became of its error since.
+    pub fn check(&self) -> Result<()> {
+        let Some((kind, reason)) = self.failure.get() else { return Ok(()) };
+        Err(Error::io(&self.target)(io::Error::new(*kind, reason.as_str())))
+    }
+
     /// Brings the bytes to the disk, then gives the file its name.
     pub fn commit(self) -> Result<()> {
-        if let Some((kind, reason)) = self.failure.get() {
-            return Err(Error::io(&self.target)(io::Error::new(*kind, reason.as_str())));
-        }
+        self.check()?;
         self.temporary.as_file().sync_all().map_err(Error::io(&self.target))?;
         self.temporary.persist(&self.target).map_err(|failed| Error::io(&self.target)(failed.error))?;
         Ok(())

@@ -26,6 +26,9 @@ pub(super) trait SampleRows: Send {
 
     /// Goes on with row `row`.
     fn seek(&mut self, row: usize) -> Result<()>;
+
+    /// Whether the last row is reached without decoding those before it.
+    fn last_row_is_near(&self) -> bool;
 }
 
 /// An opened file and what its header says.
@@ -34,12 +37,18 @@ pub(super) struct Opened {
     pub samples: Box<dyn SampleRows>,
     /// The channel of a file that names its channels was found while it was opened.
     pub channel_found: bool,
-    /// The height that stands for "no data".
-    pub no_data: Option<f32>,
+    /// What stands for "no data".
+    pub no_data: Option<NoData>,
     /// Whether the file says that its codes are sRGB.
     pub says_srgb: bool,
     /// What else looks wrong.
     pub warnings: Vec<String>,
+}
+
+/// The value that stands for "no data": as a height, and as the file writes it.
+pub(super) struct NoData {
+    pub height: f32,
+    pub text: String,
 }
 
 /// Samples in memory.
@@ -130,6 +139,10 @@ impl SampleRows for DecodedWhole {
     fn seek(&mut self, row: usize) -> Result<()> {
         self.next_row = row;
         Ok(())
+    }
+
+    fn last_row_is_near(&self) -> bool {
+        true
     }
 }
 

@@ -65,7 +65,9 @@ impl RowSink for FileSink {
             let range = format!("whole rows of {} codes of depth {}, {next}", self.row_codes, self.depth);
             return Err(Error::parameter("rows", given, range));
         }
-        self.encoder.write(first, rows)?;
+        let written = self.encoder.write(first, rows);
+        self.replacement.check()?;
+        written?;
         self.next_row = match first + count {
             next if next < end => Some(next),
             _ if self.first_row_left && first > 0 => Some(0),
@@ -78,7 +80,9 @@ impl RowSink for FileSink {
         if let Some(row) = self.next_row {
             return Err(Error::parameter("rows", format_args!("without row {row}"), "complete"));
         }
-        self.encoder.finish()?;
+        let finished = self.encoder.finish();
+        self.replacement.check()?;
+        finished?;
         self.replacement.commit()
     }
 }
@@ -97,4 +101,62 @@ pub(super) fn cannot_hold(path: &Path, format: NormalFormat, remedy: &str) -> Er
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
     let value = format!("{} with {} bits, for {name}", format.encoding, format.depth);
     Error::parameter("encoding", value, remedy)
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+    use crate::io::replace::Output;
+    use std::io::{ErrorKind, Write};
+
+    /// Writes to a full disk and says nothing, as deflate on its way to the file.
+    struct Deaf {
+        output: Output,
+        waits: bool,
+    }
+
+    impl RowEncoder for Deaf {
+        fn takes_first_row_last(&self) -> bool {
+            false
+        }
+
+        fn write(&mut self, _: usize, rows: CodesRef<'_>) -> Result<()> {
+            if !self.waits {
+                let _ = self.output.write_all(rows.bytes());
+            }
+            Ok(())
+        }
+
+        fn finish(mut self: Box<Self>) -> Result<()> {
+            let _ = self.output.write_all(&[0]);
+            Err(Error::file("n.png", "the encoder's own words", "of no help"))
+        }
+    }
+
+    fn sink(folder: &Path, waits: bool) -> Box<dyn RowSink> {
+        let replacement = Replacement::create(&folder.join("n.png")).unwrap();
+        let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
+        let encoder = Deaf { output: replacement.output_into(full), waits };
+        FileSink::boxed(encoder, replacement, Size::new(2, 1).unwrap(), NormalFormat::default())
+    }
+
+    fn assert_says_full(result: Result<()>) {
+        let error = result.unwrap_err();
+        assert!(matches!(&error, Error::Io { source, .. } if source.kind() == ErrorKind::StorageFull), "{error}");
+        assert!(error.to_string().ends_with("make room, or choose another disk"), "{error}");
+    }
+
+    #[test]
+    fn a_full_disk_is_noticed_with_the_rows_that_it_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        assert_says_full(sink(folder.path(), false).write(0, CodesRef::U8(&[0; 6])));
+    }
+
+    #[test]
+    fn a_full_disk_goes_before_the_encoders_words() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut sink = sink(folder.path(), true);
+        sink.write(0, CodesRef::U8(&[0; 6])).unwrap();
+        assert_says_full(sink.finish());
+    }
 }

@@ -32,6 +32,11 @@ impl Monitor {
         self.check()
     }
 
+    /// Takes texels back that will be baked again, or never.
+    pub(crate) fn take_back(&self, texels: u64) {
+        self.texels.fetch_sub(texels, Relaxed);
+    }
+
     /// Fails if the bake shall end.
     pub(crate) fn check(&self) -> Result<()> {
         if self.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }

@@ -28,6 +28,12 @@ pub trait RowSource: Send {
     /// # Errors
     /// As [`RowSource::read`].
     fn read_last_row(&mut self, row: HeightsMut<'_>) -> Result<()>;
+
+    /// Whether [`RowSource::read_last_row`] costs about as much as reading a row: a seek, not a whole decoding. Where
+    /// it costs more, a map of moderate size is held in memory instead.
+    fn last_row_is_near(&self) -> bool {
+        false
+    }
 }
 
 /// Bands in flight besides the one in use: one being read, one waiting.

@@ -106,30 +106,55 @@ fn every_output_format_holds_the_reference_in_its_usual_depth() {
 }
 
 #[test]
-fn two_inputs_for_one_output_stop_everything_before_it_begins() {
+fn two_inputs_for_one_output_fail_both_and_the_others_go_on() {
     let folder = Folder::new();
-    folder.grey8("tex/a_height.png", 6, 6, bumps8);
+    let map = folder.grey8("tex/a_height.png", 6, 6, bumps8);
     folder.grey8("tex/wall_height.png", 6, 6, bumps8);
     folder.grey8("tex/wall_disp.png", 6, 6, bumps8);
     let run = folder.run(&["bake", "tex", "--out", "out"]).ends(1);
-    run.says("wall_normal.png", &["tex/wall_disp.png", "tex/wall_height.png", "would be baked into it", "--name"]);
-    assert!(folder.files("out").is_empty());
+    let [disp, height] = ["tex/wall_disp.png", "tex/wall_height.png"];
+    run.says(&format!("wall_normal.png: both {disp} and {height} would be baked into it"), &["failed", "--name"]);
+    run.says(&format!("wall_normal.png: both {height} and {disp} would be baked into it"), &["failed", "--name"]);
+    assert_eq!(folder.files("out"), ["a_normal.png"]);
+    folder.assert_baked("out/a_normal.png", &map, &NormalOptions::default());
+    let summary = run.stdout.lines().last().unwrap();
+    assert!(summary.starts_with("1 of 3 files baked, 2 failed; "), "{summary}");
+}
+
+#[cfg(unix)]
+#[test]
+fn two_names_of_one_output_folder_are_one() {
+    let folder = Folder::new();
+    folder.grey8("tex/a/wall_height.png", 6, 6, bumps8);
+    folder.grey8("tex/b/wall_height.png", 6, 6, bumps8);
+    folder.file("out/b/there", "");
+    std::os::unix::fs::symlink(folder.path("out/b"), folder.path("out/a")).unwrap();
+    let run = folder.run(&["bake", "tex", "--out", "out"]).ends(1);
+    run.says("both tex/a/wall_height.png and tex/b/wall_height.png", &["failed", "would be baked into it"]);
+    assert_eq!(folder.files("out/b"), ["there"]);
+    // The folder that the link leads to need not exist below it.
+    let run = folder.run(&["bake", "tex", "--out", "out", "--name", "new/{stem}"]).ends(1);
+    run.says("both tex/b/wall_height.png and tex/a/wall_height.png", &["failed", "would be baked into it"]);
+    assert_eq!(folder.files("out/b"), ["there"]);
 }
 
 #[test]
-fn an_output_that_would_overwrite_an_input_stops_everything() {
+fn an_output_that_would_overwrite_an_input_fails_and_the_others_go_on() {
     let folder = Folder::new();
     folder.grey8("tex/a_height.png", 6, 6, bumps8);
     folder.grey8("tex/b_height.png", 6, 6, bumps8);
     let before = std::fs::read(folder.path("tex/b_height.png")).unwrap();
     let run = folder.run(&["bake", "tex", "--out", "tex", "--name", "{stem}_height"]).ends(1);
-    run.says("_height.png", &["tex/a_height.png", "would overwrite this input", "choose another output"]);
-    // One file's output is another file's input.
+    for name in ["tex/a_height.png", "tex/b_height.png"] {
+        run.says(&format!("failed {name}: "), &["would overwrite this input", "choose another output"]);
+    }
+    // One file's output is another file's input: the other is baked, once it has an output of its own.
     folder.grey8("tex/c_h.png", 6, 6, bumps8);
-    let run = folder.run(&["bake", "tex/c_h.png", "tex/b_height.png", "--out", "tex", "--name", "b_height{size}"]);
-    run.ends(1);
+    folder.file("texbake.toml", "[[override]]\nglob = 'c_h.png'\nname = 'b_height'\n");
+    let run = folder.run(&["bake", "tex/c_h.png", "tex/b_height.png", "--out", "tex"]).ends(1);
+    run.says("failed tex/b_height.png: the output of tex/c_h.png would overwrite this input", &[]);
     assert_eq!(std::fs::read(folder.path("tex/b_height.png")).unwrap(), before);
-    assert_eq!(folder.files("tex").len(), 3);
+    assert_eq!(folder.files("tex"), ["a_height.png", "b_height.png", "b_normal.png", "c_h.png"]);
 }
 
 #[test]
@@ -143,19 +168,24 @@ fn a_folder_without_height_maps_is_an_error_that_says_what_they_are_called() {
 }
 
 #[test]
-fn many_files_give_a_table_of_failures_only() {
+fn many_files_give_a_table_of_failures_and_the_slowest() {
     let folder = Folder::new();
     for index in 0..41 {
         folder.grey8(&format!("tex/m{index}_h.png"), 2, 2, bumps8);
     }
     let run = folder.run(&["bake", "tex", "--out", "out"]).ends(0);
-    assert_eq!(run.stdout.lines().count(), 1, "{}", run.stdout);
+    let lines: Vec<&str> = run.stdout.lines().collect();
+    // What it is, the header, ten files and the summary.
+    assert_eq!((lines.len(), lines[0]), (13, "of 41 files the 10 slowest:"), "{}", run.stdout);
+    let milliseconds = |row: &&str| row.split_whitespace().rev().nth(1).unwrap().parse::<f64>().unwrap();
+    assert!(lines[2..12].iter().all(|row| row.ends_with("baked")), "{}", run.stdout);
+    assert!(lines[2..12].is_sorted_by(|a, b| milliseconds(a) >= milliseconds(b)), "{}", run.stdout);
     folder.file("tex/bad_h.png", "");
     let run = folder.run(&["bake", "tex", "--out", "out"]).ends(1);
     let lines: Vec<&str> = run.stdout.lines().collect();
-    assert_eq!(lines.len(), 3, "{}", run.stdout);
-    assert!(lines[1].contains("tex/bad_h.png") && lines[1].ends_with("failed"), "{}", lines[1]);
-    assert!(lines[2].starts_with("41 of 42 files baked, 1 failed; "), "{}", lines[2]);
+    assert_eq!((lines.len(), lines[0]), (14, "of 42 files 1 not baked, and the 10 slowest:"), "{}", run.stdout);
+    assert!(lines[2].contains("tex/bad_h.png") && lines[2].ends_with("failed"), "{}", lines[2]);
+    assert!(lines[13].starts_with("41 of 42 files baked, 1 failed; "), "{}", lines[13]);
 }
 
 #[cfg(unix)]
@@ -172,4 +202,18 @@ fn links_are_followed_but_not_in_circles() {
     assert_eq!(folder.files("out"), ["a_normal.png", "shared/b_normal.png"]);
     symlink(folder.path("gone_height.png"), folder.path("tex/gone_height.png")).unwrap();
     folder.run(&["bake", "tex", "--out", "out"]).ends(1).says("failed tex/gone_height.png", &["No such file"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn names_that_are_no_unicode_are_baked_and_reported() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let folder = Folder::new();
+    let map = folder.grey8("tex/plain_height.png", 6, 6, bumps8);
+    let name = folder.path("tex").join(OsStr::from_bytes(b"w\xe4nd_height.png"));
+    std::fs::rename(folder.path("tex/plain_height.png"), name).unwrap();
+    folder.run(&["bake", "tex", "--out", "out", "--report", "report.json"]).ends(0);
+    folder.assert_baked("out/w\u{fffd}nd_normal.png", &map, &NormalOptions::default());
+    assert_eq!(folder.json("report.json")["files"][0]["input"], "tex/w\u{fffd}nd_height.png");
 }

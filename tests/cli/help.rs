@@ -40,6 +40,9 @@ fn help_names_every_command_and_option() {
     {
         assert!(bake.contains(option), "{option}");
     }
+    // A metre in a 16-bit elevation model is one of 65535 units.
+    let words = normal.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("65535 for 16-bit elevation in metres"), "{normal}");
     assert!(folder.run(&["devices", "--help"]).ends(0).stdout.contains("--json"));
     let version = folder.run(&["--version"]).ends(0).stdout;
     assert_eq!(version.trim_end(), format!("texbake {}", env!("CARGO_PKG_VERSION")));

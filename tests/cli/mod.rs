@@ -4,6 +4,7 @@ mod errors;
 mod folder;
 mod help;
 mod interrupt;
+mod memory;
 mod normal;
 mod report;
 mod settings;

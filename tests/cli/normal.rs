@@ -2,7 +2,7 @@
 
 use super::support::{Folder, bumps8, bumps16, flat, read_png};
 use texbake::{
-    Channels, Convention, Depth, Edge, Edges, Encoding, Filter, NormalFormat, NormalOptions, Precision, Scale,
+    Channels, CodesRef, Convention, Depth, Edge, Edges, Encoding, Filter, NormalFormat, NormalOptions, Precision, Scale,
 };
 
 #[test]
@@ -111,4 +111,19 @@ fn an_input_is_never_overwritten() {
     run.says("error: height.png", &["the report would overwrite the input"]);
     assert_eq!(std::fs::read(folder.path("height.png")).unwrap(), before);
     assert!(!folder.path("n.png").exists());
+}
+
+#[test]
+fn elevation_in_metres_has_the_depth_of_all_codes() {
+    use tiff::encoder::{TiffEncoder, colortype::GrayI16};
+    let folder = Folder::new();
+    let file = std::fs::File::create(folder.path("dem.tif")).unwrap();
+    TiffEncoder::new(file).unwrap().write_image::<GrayI16>(4, 1, &[-2, -1, 0, 1]).unwrap();
+    // Texels of one metre, each a metre above the one before: the slope is 1.
+    let metres = ["--size", "4x1", "--depth", "65535", "--edge", "clamp", "-q"];
+    folder.run(&[&["normal", "dem.tif", "-o", "n.png"], &metres[..]].concat()).ends(0);
+    let (_, _, codes) = read_png(&folder.path("n.png"));
+    let CodesRef::U8(codes) = codes.as_ref() else { unreachable!("it is an 8-bit map") };
+    // 127.5 (1 - 1 / sqrt(2)) and 127.5 (1 + 1 / sqrt(2)), rounded.
+    assert_eq!(codes[3..9], [37, 128, 218, 37, 128, 218]);
 }

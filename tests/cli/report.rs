@@ -53,8 +53,8 @@ fn a_folder_is_reported_file_by_file() {
         files[0],
         json!({
             "input": "tex/a_height.png", "output": "out/a_normal.png", "result": "baked", "error": null,
-            "warnings": [], "options": options, "backend": "cpu reference", "adapter": null, "reason": "asked for",
-            "fallback": null, "width": 20, "height": 10, "depth": "u16",
+            "warnings": [], "options": options, "backend": "cpu", "adapter": "reference, 1 thread",
+            "reason": "asked for", "fallback": null, "width": 20, "height": 10, "depth": "u16",
             "scale": { "x": "1", "y": "1", "exact": true },
             "bytes_in": bytes("tex/a_height.png"), "bytes_out": bytes("out/a_normal.png"),
         })
@@ -85,4 +85,48 @@ fn one_file_is_reported_too() {
     assert_eq!((&file["input"], &file["output"]), (&json!("h.png"), &json!("n.png")));
     assert_eq!(file["scale"], json!({ "x": "5419351/1725033", "y": "5419351/1725033", "exact": false }));
     assert!(file["warnings"][0].as_str().unwrap().contains("too many digits"));
+}
+
+#[test]
+fn a_report_that_cannot_be_written_is_known_before_the_bake() {
+    let folder = Folder::new();
+    folder.grey8("tex/a_height.png", 3, 3, bumps8);
+    for (report, parts) in [
+        ("tex/a_height.png/r.json", ["tex/a_height.png/r.json", "a part of its path is a file"]),
+        ("tex", ["it is a folder", "give the name of a file"]),
+        ("tex/a_height.png", ["the report would overwrite the input tex/a_height.png", "another name for the report"]),
+        ("out/../out/a_normal.png", ["the report would overwrite the output out/a_normal.png", "another name"]),
+    ] {
+        let run = folder.run(&["bake", "tex", "--out", "out", "--report", report]).ends(1);
+        run.says("error: ", &parts);
+    }
+    assert_eq!(folder.files("."), ["tex/a_height.png"]);
+    // The outputs' folder need not exist yet.
+    folder.run(&["bake", "tex", "--out", "out", "--report", "out/r.json"]).ends(0);
+    assert_eq!(folder.files("out"), ["a_normal.png", "r.json"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_report_has_the_permissions_of_any_new_file() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::new();
+    folder.grey8("h.png", 3, 2, bumps8);
+    folder.file("plain", "");
+    folder.run(&["normal", "h.png", "-o", "n.png", "--report", "r.json", "-q"]).ends(0);
+    let mode = |name: &str| std::fs::metadata(folder.path(name)).unwrap().permissions().mode() & 0o777;
+    assert_eq!(mode("r.json"), mode("plain"));
+}
+
+#[test]
+fn files_that_were_never_opened_have_no_time() {
+    let folder = Folder::new();
+    folder.grey8("tex/a_height.png", 3, 3, bumps8);
+    folder.grey8("tex/a_disp.png", 3, 3, bumps8);
+    folder.run(&["bake", "tex", "--out", "out", "-q", "--report", "r.json"]).ends(1);
+    let report = folder.json("r.json");
+    for file in report["files"].as_array().unwrap() {
+        assert_eq!((&file["result"], &file["milliseconds"]), (&json!("failed"), &Value::Null));
+    }
+    assert_eq!(report["totals"]["failed"], 2);
 }

@@ -112,3 +112,20 @@ fn an_override_for_nothing_gives_a_warning() {
     let run = folder.run(&["bake", "tex", "--out", "out"]).ends(0);
     run.says("warning: tex", &["no height map matches the override \"b_*\""]);
 }
+
+#[test]
+fn mistakes_that_only_a_bake_shows_name_the_file_too() {
+    let folder = Folder::new();
+    folder.grey8("tex/a_h.png", 3, 3, bumps8);
+    for (text, parts) in [
+        ("[defaults]\nscale = 1e9\n", ["texbake.toml: scale is 1000000000: it must be", "16777215"]),
+        ("[defaults]\nsize = '1x1'\n", ["texbake.toml: depth is missing: ", "--size"]),
+        ("suffix = ['']\n", ["texbake.toml: suffix is empty: ", "_height"]),
+    ] {
+        folder.file("tex/texbake.toml", text);
+        folder.run(&["bake", "tex", "--out", "out"]).ends(2).says("error: tex", &parts);
+    }
+    // What is wrong on the command line is not the file's fault.
+    folder.file("tex/texbake.toml", "[defaults]\nfilter = 'sobel'\n");
+    folder.run(&["bake", "tex", "--out", "out", "--scale", "99999999"]).ends(2).says("error: --scale is 99999999", &[]);
+}

@@ -139,6 +139,20 @@ fn floats_are_linear_and_finite() {
 }
 
 #[test]
+fn colours_that_are_no_numbers_are_no_difference() {
+    let folder = Folder::new();
+    let path = folder.path("c.exr");
+    let encoding = scan_lines(Compression::Uncompressed, LineOrder::Increasing);
+    let nan = vec![1.0, f32::NAN];
+    save(&path, 1, 2, encoding, channels(&[("R", nan.clone()), ("G", nan.clone()), ("B", nan.clone())]));
+    let message = read_error(&path, &default());
+    assert!(message.starts_with("the height at column 0, row 1 is NaN"), "{message}");
+    save(&path, 1, 2, encoding, channels(&[("R", vec![1.0, 2.0]), ("G", nan.clone()), ("B", nan)]));
+    let message = read_error(&path, &default());
+    assert!(message.starts_with("the height at column 0, row 1 is NaN"), "{message}");
+}
+
+#[test]
 fn claims_are_checked_before_anything_is_allocated() {
     let folder = Folder::new();
     let path = folder.path("t.exr");

@@ -270,6 +270,19 @@ fn sizes_are_judged_by_the_header() {
     assert!(open_heights(&interlaced, &little).is_err());
 }
 
+#[test]
+fn a_transparent_colour_counts_as_the_alpha_that_it_becomes() {
+    let folder = Folder::new();
+    let file = hand_made(16, 16, 16, 2, 1, &[0]);
+    let mut key = [b"tRNS".as_slice(), &[0; 6]].concat();
+    let checksum = crc32(&key).to_be_bytes();
+    key = [&6u32.to_be_bytes()[..], &key, &checksum].concat();
+    let path = folder.file("k.png", &[&file[..33], &key, &file[33..]].concat());
+    // Six bytes a texel in the file, eight when it is decoded.
+    let message = read_error(&path, &ReadOptions { max_bytes: 1800, ..default() });
+    assert!(message.contains("16 x 16 texels, 2048 bytes decoded, above the limit of 1800"), "{message}");
+}
+
 /// Width, height, colour type, bit depth and bytes of a PNG.
 fn decode(path: &std::path::Path) -> (u32, u32, ColorType, BitDepth, Vec<u8>) {
     let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());

@@ -107,3 +107,25 @@ fn text_is_no_image() {
     std::fs::create_dir(folder.path("d.png")).unwrap();
     assert!(read_error(&folder.path("d.png"), &default()).contains("directory"));
 }
+
+#[cfg(unix)]
+#[test]
+fn a_long_file_is_not_read_for_its_length() {
+    let folder = Folder::new();
+    let lengthen = |path: &std::path::Path| {
+        std::fs::File::options().write(true).open(path).unwrap().set_len(1 << 40).unwrap();
+    };
+    // A sparse tebibyte, of which the header describes 16 bytes.
+    let path = folder.file("b.bmp", &bmp(2, 2, &[3, 3, 3, 4, 4, 4, 0, 0, 1, 1, 1, 2, 2, 2, 0, 0]));
+    lengthen(&path);
+    assert_eq!(read_all_ways(&path, &default()).unwrap(), Values::U8(vec![1, 2, 3, 4]));
+    let path = folder.file("t.tga", &tga(3, 2, 2, 8, 0x20, &[1, 2, 3, 4]));
+    lengthen(&path);
+    assert_eq!(read_all_ways(&path, &default()).unwrap(), Values::U8(vec![1, 2, 3, 4]));
+    for (name, first) in [("j.jpg", b"\xff\xd8\xff\xe0".as_slice()), ("w.webp", b"RIFF\0\0\0\0WEBP")] {
+        let path = folder.file(name, first);
+        lengthen(&path);
+        let message = read_error(&path, &default());
+        assert!(message.contains("its 1099511627776 bytes, above the limit of 4294967296; raise it"), "{message}");
+    }
+}

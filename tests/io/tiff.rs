@@ -170,13 +170,14 @@ fn tiled_elevation_reads_and_its_holes_are_named() {
 
     let path = folder.file("hole.tif", &tiled("1719").bytes());
     let message = read_error(&path, &default());
-    assert!(message.contains("the texel at column 19, row 17 holds no data"), "{message}");
-    assert!(message.contains("fill the holes first, or crop the map"), "{message}");
+    assert!(message.contains("the texel at column 19, row 17 holds 1719, the file's no-data value"), "{message}");
+    assert!(message.contains("fill the holes with gdal_fillnodata, crop the map"), "{message}");
+    assert!(message.contains("if 1719 is a height, remove the mark with gdal_edit -unsetnodata"), "{message}");
 
     let mut signed = Tiff::grey(2, 1, 16, 2, vec![words([5, -32768i16 as u16])]);
     signed.extra.push((42113, 2, 7, b"-32768\0".to_vec()));
     let message = read_error(&folder.file("s.tif", &signed.bytes()), &default());
-    assert!(message.contains("the texel at column 1, row 0 holds no data"), "{message}");
+    assert!(message.contains("the texel at column 1, row 0 holds -32768, the file's no-data value"), "{message}");
 }
 
 #[test]
@@ -224,7 +225,7 @@ fn claims_that_the_file_cannot_keep_end_in_a_reason() {
     assert!(message.contains("invalid dimensions: 0x2"), "{message}");
     let one_strip = Tiff::grey(60000, 60000, 16, 1, vec![words([1])]);
     let message = read_error(&folder.file("h.tif", &one_strip.bytes()), &default());
-    assert!(message.contains("the header claims 60000 x 60000 texels, 7200000000 bytes decoded"), "{message}");
+    assert!(message.contains("the header claims 60000 x 60000 texels, 14400000000 bytes decoded"), "{message}");
     let mut tile = Tiff::grey(2, 2, 16, 1, vec![words([1])]);
     tile.tile = Some((1 << 20, 1 << 20));
     let message = read_error(&folder.file("t.tif", &tile.bytes()), &default());
@@ -301,4 +302,16 @@ fn many_strips_hold_every_row() {
     let mut decoder = Decoder::new(std::fs::File::open(&path).unwrap()).unwrap();
     assert_eq!((decoder.dimensions().unwrap(), decoder.strip_count().unwrap()), ((500, 1100), 4));
     assert!(matches!(decoder.read_image().unwrap(), DecodingResult::U16(found) if found == codes));
+}
+
+#[test]
+fn one_strip_counts_as_it_is_decoded_and_as_heights() {
+    let folder = Folder::new();
+    let path = folder.file("s.tif", &Tiff::grey(100, 100, 8, 1, vec![vec![7; 10_000]]).bytes());
+    let message = read_error(&path, &ReadOptions { max_bytes: 15_000, ..default() });
+    assert!(message.contains("100 x 100 texels, 20000 bytes decoded, above the limit of 15000"), "{message}");
+    assert!(open_heights(&path, &ReadOptions { max_bytes: 20_000, ..default() }).is_ok());
+    // Ten strips: a tenth of it.
+    let path = folder.file("t.tif", &Tiff::grey(100, 100, 8, 1, vec![vec![7; 1000]; 10]).bytes());
+    assert!(open_heights(&path, &ReadOptions { max_bytes: 2000, ..default() }).is_ok());
 }

@@ -80,10 +80,14 @@ impl Cpu {
 }
 
 impl Backend for Cpu {
-    fn name(&self) -> String {
+    fn kind(&self) -> &'static str {
+        "cpu"
+    }
+
+    fn device(&self) -> String {
         let threads = self.threads();
         let plural = if threads == 1 { "" } else { "s" };
-        format!("cpu, {threads} thread{plural}, {}", vectorised::instruction_set())
+        format!("{threads} thread{plural}, {}", vectorised::instruction_set())
     }
 
     fn band_rows(&self, plan: &NormalPlan) -> usize {

@@ -10,8 +10,12 @@ use crate::stream::{CodeSink, HeightBands};
 pub(crate) struct Reference;
 
 impl Backend for Reference {
-    fn name(&self) -> String {
-        "cpu reference".into()
+    fn kind(&self) -> &'static str {
+        "cpu"
+    }
+
+    fn device(&self) -> String {
+        "reference, 1 thread".into()
     }
 
     fn band_rows(&self, _: &NormalPlan) -> usize {

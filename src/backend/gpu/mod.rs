@@ -87,8 +87,12 @@ impl Gpu {
 }
 
 impl Backend for Gpu {
-    fn name(&self) -> String {
-        format!("gpu, {}", self.device.name)
+    fn kind(&self) -> &'static str {
+        "gpu"
+    }
+
+    fn device(&self) -> String {
+        self.device.name.clone()
     }
 
     fn band_rows(&self, plan: &NormalPlan) -> usize {

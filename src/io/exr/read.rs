@@ -2,9 +2,11 @@
 
 use crate::error::{Error, Result};
 use crate::io::channel::Channel;
-use crate::io::samples::{Layout, Opened, SampleRows, Samples, copy, len, part, part_mut};
+use crate::io::damage::{damaged, truncated};
+use crate::io::groups::{GroupDecoder, GroupedRows};
+use crate::io::samples::{Layout, Opened, Samples};
 use crate::io::{ReadOptions, limits};
-use crate::map::{HeightType, HeightsMut};
+use crate::map::HeightType;
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{Chunk, CompressedBlock};
 use exr::compression::Compression;
@@ -17,9 +19,8 @@ use std::fs::File;
 use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-/// The rows of an EXR: one block of scan lines or one row of tiles is decoded at a time, through the file's own table
-/// of block offsets.
-struct ExrRows {
+/// An EXR by blocks of scan lines or rows of tiles, found through the file's own table of block offsets.
+struct ExrBlocks {
     path: PathBuf,
     file: BufReader<File>,
     file_bytes: u64,
@@ -35,9 +36,6 @@ struct ExrRows {
     channels: Vec<BlockChannel>,
     /// Bytes of a texel, all channels.
     texel_bytes: usize,
-    next_row: usize,
-    group: Samples,
-    decoded: Option<usize>,
 }
 
 /// A wanted channel of a block.
@@ -66,7 +64,7 @@ pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
         BlockDescription::Tiles(tiles) => (tiles.tile_size.0, tiles.tile_size.1),
     };
     if block_width == 0 || block_rows == 0 {
-        return Err(Error::file(path, "its tiles are empty", DAMAGED));
+        return Err(damaged(path, "its tiles are empty"));
     }
     let texel_bytes = header.channels.bytes_per_pixel;
     let (across, down) = (width.div_ceil(block_width), height.div_ceil(block_rows));
@@ -78,7 +76,7 @@ pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
     let skipped: u128 = meta.headers[..layer].iter().map(|header| header.chunk_count as u128 * 8).sum();
     let table_bytes = across as u128 * down as u128 * 8;
     if u128::from(tables) + skipped + table_bytes > file_bytes.into() {
-        return Err(Error::file(path, TRUNCATED, "copy or export it again"));
+        return Err(truncated(path));
     }
     MetaData::validate(&meta.headers, false).map_err(reason(path))?;
     if header.channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) {
@@ -92,7 +90,7 @@ pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
 
     let layout = Layout { size, depth: HeightType::F32, colours: wanted.len(), alpha: false };
     let channels = wanted.iter().map(|index| block_channel(path, &header.channels.list, *index));
-    let rows = ExrRows {
+    let blocks = ExrBlocks {
         path: path.into(),
         file,
         file_bytes,
@@ -104,12 +102,9 @@ pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
         offsets,
         channels: channels.collect::<Result<_>>()?,
         texel_bytes,
-        next_row: 0,
-        group: Samples::zeroed(HeightType::F32, layout.per_row() * rows_held),
-        decoded: None,
         meta,
     };
-    Ok(Opened { channel_found: true, ..Opened::new(rows) })
+    Ok(Opened { channel_found: true, ..Opened::new(GroupedRows::new(blocks)) })
 }
 
 /// Where a channel stands in a block.
@@ -169,40 +164,17 @@ fn choose_in_layer(names: &[String], channel: Option<&Channel>) -> Option<Vec<us
     }
 }
 
-impl ExrRows {
-    /// Decodes the block of scan lines or the row of tiles `index`.
-    fn decode(&mut self, index: usize) -> Result<()> {
-        if self.decoded == Some(index) {
-            return Ok(());
-        }
-        self.decoded = None;
-        let (width, height) = (self.layout.size.width(), self.layout.size.height());
-        for column in 0..self.across {
-            let (left, top) = (column * self.block_width, index * self.block_rows);
-            let (columns, rows) = (self.block_width.min(width - left), self.block_rows.min(height - top));
-            let raw_bytes = columns * rows * self.texel_bytes;
-            let block = self.read_block(self.offsets[index * self.across + column], raw_bytes)?;
-            let expected = (self.layer, Vec2(0, 0), Vec2(left, top), Vec2(columns, rows));
-            let found = (block.index.layer, block.index.level, block.index.pixel_position, block.index.pixel_size);
-            if found != expected || block.data.len() != raw_bytes {
-                return Err(Error::file(&self.path, "a block is not where its table says", DAMAGED));
-            }
-            self.put(&block.data, left, columns, rows);
-        }
-        self.decoded = Some(index);
-        Ok(())
-    }
-
+impl ExrBlocks {
     /// Reads a block of `raw_bytes` bytes before compression.
     fn read_block(&mut self, offset: u64, raw_bytes: usize) -> Result<UncompressedBlock> {
         // An offset that was never written is zero: the file is incomplete.
         if offset == 0 || offset >= self.file_bytes {
-            return Err(Error::file(&self.path, TRUNCATED, "copy or export it again"));
+            return Err(truncated(&self.path));
         }
         self.file.seek(SeekFrom::Start(offset)).map_err(Error::io(&self.path))?;
         let chunk = Chunk::read(&mut self.file, &self.meta).map_err(reason(&self.path))?;
         if !self.sections_are_credible(&chunk, raw_bytes) {
-            return Err(Error::file(&self.path, "a compressed block claims more than it can hold", DAMAGED));
+            return Err(damaged(&self.path, "a compressed block claims more than it can hold"));
         }
         UncompressedBlock::decompress_chunk(chunk, &self.meta, false).map_err(reason(&self.path))
     }
@@ -227,8 +199,8 @@ impl ExrRows {
     }
 
     /// Copies the wanted channels of a block to their place; a block holds, line by line, channel after channel.
-    fn put(&mut self, data: &[u8], left: usize, columns: usize, rows: usize) {
-        let Samples::F32(group) = &mut self.group else { unreachable!("EXR heights are floats") };
+    fn put(&self, data: &[u8], left: usize, columns: usize, rows: usize, group: &mut Samples) {
+        let Samples::F32(group) = group else { unreachable!("EXR heights are floats") };
         let (per_texel, per_row) = (self.layout.per_texel(), self.layout.per_row());
         for row in 0..rows {
             let line = &data[row * columns * self.texel_bytes..][..columns * self.texel_bytes];
@@ -246,49 +218,42 @@ impl ExrRows {
     }
 }
 
-impl SampleRows for ExrRows {
+impl GroupDecoder for ExrBlocks {
     fn layout(&self) -> Layout {
         self.layout
     }
 
-    fn read(&mut self, mut rows: HeightsMut<'_>) -> Result<()> {
-        let per_row = self.layout.per_row();
-        let (mut done, wanted) = (0, len(&rows) / per_row);
-        while done < wanted {
-            let index = self.next_row / self.block_rows;
-            self.decode(index)?;
-            let from = self.next_row - index * self.block_rows;
-            let count = (self.block_rows - from).min(wanted - done);
-            let decoded = part(self.group.as_ref(), from * per_row..(from + count) * per_row);
-            copy(decoded, &mut part_mut(&mut rows, done * per_row..(done + count) * per_row));
-            self.next_row += count;
-            done += count;
+    fn group_rows(&self) -> usize {
+        self.block_rows
+    }
+
+    fn decode(&mut self, index: usize, group: &mut Samples) -> Result<()> {
+        let (width, height) = (self.layout.size.width(), self.layout.size.height());
+        for column in 0..self.across {
+            let (left, top) = (column * self.block_width, index * self.block_rows);
+            let (columns, rows) = (self.block_width.min(width - left), self.block_rows.min(height - top));
+            let raw_bytes = columns * rows * self.texel_bytes;
+            let block = self.read_block(self.offsets[index * self.across + column], raw_bytes)?;
+            let expected = (self.layer, Vec2(0, 0), Vec2(left, top), Vec2(columns, rows));
+            let found = (block.index.layer, block.index.level, block.index.pixel_position, block.index.pixel_size);
+            if found != expected || block.data.len() != raw_bytes {
+                return Err(damaged(&self.path, "a block is not where its table says"));
+            }
+            self.put(&block.data, left, columns, rows, group);
         }
         Ok(())
     }
-
-    fn seek(&mut self, row: usize) -> Result<()> {
-        self.next_row = row;
-        Ok(())
-    }
 }
-
-const TRUNCATED: &str = "the file ends before its last row: it is truncated";
-const DAMAGED: &str = "it is damaged; copy or export it again";
 
 /// The decoder's reason, with the file and the way out.
 fn reason(path: &Path) -> impl FnOnce(exr::error::Error) -> Error + '_ {
     use exr::error::Error::{Io, NotSupported};
     move |error| match error {
-        Io(error) if error.kind() == ErrorKind::UnexpectedEof => {
-            Error::file(path, TRUNCATED, "copy or export it again")
-        }
+        Io(error) if error.kind() == ErrorKind::UnexpectedEof => truncated(path),
         Io(error) => Error::io(path)(error),
         NotSupported(what) => Error::file(path, what, "export it as a flat image with ZIP compression"),
         // What the decoder says when bytes are missing.
-        error if error.to_string().contains("reference to missing bytes") => {
-            Error::file(path, TRUNCATED, "copy or export it again")
-        }
-        error => Error::file(path, error, DAMAGED),
+        error if error.to_string().contains("reference to missing bytes") => truncated(path),
+        error => damaged(path, error),
     }
 }

@@ -1,6 +1,7 @@
 //! PNG height maps.
 
 use crate::error::{Error, Result};
+use crate::io::damage::{damaged, truncated};
 use crate::io::samples::{DecodedWhole, Layout, Opened, SampleRows, Samples, bytes_mut, len};
 use crate::io::{ReadOptions, limits, srgb};
 use crate::map::{HeightType, HeightsMut};
@@ -57,16 +58,14 @@ fn start(path: &Path, max_bytes: u64) -> Result<(Reader<BufReader<File>>, Layout
     let header = decoder.read_header_info().map_err(reason(path))?;
     let size = limits::size(path, header.width.into(), header.height.into())?;
     let row_bits = size.width() as u128 * header.bits_per_pixel() as u128;
-    let rows_at_once = if header.interlaced { size.height() } else { 2 };
-    // A palette index or a grey code below 8 bits grows to four 8-bit samples at most.
-    let decoded_bits = row_bits.max(size.width() as u128 * 32) * rows_at_once as u128;
-    limits::check(path, size, decoded_bits / 8, max_bytes)?;
+    let rows_at_once = if header.interlaced { size.height() as u128 } else { 2 };
+    limits::check(path, size, row_bits * rows_at_once / 8, max_bytes)?;
     limits::check_deflated(path, size, row_bits.div_ceil(8) * size.height() as u128, stored)?;
     decoder.set_limits(Limits { bytes: METADATA_BYTES + size.width() * 8 });
 
     let reader = decoder.read_info().map_err(reason(path))?;
     if reader.info().frame_control().is_some_and(|frame| (frame.width, frame.height) != reader.info().size()) {
-        return Err(Error::file(path, "its first frame has another size than its header says", DAMAGED));
+        return Err(damaged(path, "its first frame has another size than its header says"));
     }
     let (colour, bits) = reader.output_color_type();
     let depth = if bits == BitDepth::Sixteen { HeightType::U16 } else { HeightType::U8 };
@@ -75,9 +74,12 @@ fn start(path: &Path, max_bytes: u64) -> Result<(Reader<BufReader<File>>, Layout
         ColorType::GrayscaleAlpha => (1, true),
         ColorType::Rgb => (3, false),
         ColorType::Rgba => (3, true),
-        ColorType::Indexed => return Err(Error::file(path, "its palette is missing", DAMAGED)),
+        ColorType::Indexed => return Err(damaged(path, "its palette is missing")),
     };
-    Ok((reader, Layout { size, depth, colours, alpha }))
+    // Palettes, grey below 8 bits and transparent colours grow when they are decoded.
+    let layout = Layout { size, depth, colours, alpha };
+    limits::check(path, size, layout.row_bytes() as u128 * rows_at_once, max_bytes)?;
+    Ok((reader, layout))
 }
 
 impl SampleRows for PngRows {
@@ -89,7 +91,7 @@ impl SampleRows for PngRows {
         let count = len(&rows) / self.layout.per_row();
         for row in bytes_mut(&mut rows).chunks_exact_mut(self.layout.row_bytes()) {
             let read = self.reader.read_row(row).map_err(reason(&self.path))?;
-            read.ok_or_else(|| Error::file(&self.path, "it holds too few rows", DAMAGED))?;
+            read.ok_or_else(|| damaged(&self.path, "it holds too few rows"))?;
         }
         to_native_order(rows);
         self.next_row += count;
@@ -113,6 +115,10 @@ impl SampleRows for PngRows {
         }
         Ok(())
     }
+
+    fn last_row_is_near(&self) -> bool {
+        false
+    }
 }
 
 /// PNG stores 16-bit samples with the most significant byte first.
@@ -122,16 +128,12 @@ fn to_native_order(samples: HeightsMut<'_>) {
     }
 }
 
-const DAMAGED: &str = "it is damaged; copy or export it again";
-
 /// The decoder's reason, with the file and the way out.
 fn reason(path: &Path) -> impl FnOnce(DecodingError) -> Error + '_ {
     move |error| match error {
-        DecodingError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
-            Error::file(path, "the file ends before its last row: it is truncated", "copy or export it again")
-        }
+        DecodingError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => truncated(path),
         DecodingError::IoError(error) => Error::io(path)(error),
-        DecodingError::LimitsExceeded => Error::file(path, "it needs too much memory beside its rows", DAMAGED),
-        error => Error::file(path, error, DAMAGED),
+        DecodingError::LimitsExceeded => damaged(path, "it needs too much memory beside its rows"),
+        error => damaged(path, error),
     }
 }

@@ -73,7 +73,7 @@ pub(crate) fn create(path: &Path, size: Size, format: NormalFormat) -> Result<Bo
         row_bytes,
         texel_bytes,
         first_row: Vec::new(),
-        previous: Vec::new(),
+        previous: vec![0; row_bytes],
         current: vec![0; row_bytes],
         filtered: Vec::with_capacity(1 + row_bytes),
     };
@@ -96,7 +96,6 @@ impl RowEncoder for PngEncoder {
                 _ => self.deflate(PAETH),
             }
             std::mem::swap(&mut self.previous, &mut self.current);
-            self.current.resize(self.row_bytes, 0);
         }
         Ok(())
     }
@@ -172,5 +171,9 @@ fn nearest(left: u8, up: u8, upper_left: u8) -> u8 {
 
 /// The encoder's reason, with the file.
 fn reason(path: &Path) -> impl FnOnce(EncodingError) -> Error + '_ {
-    move |error| Error::io(path)(error.into())
+    move |error| match error {
+        // The crate's own conversion loses the kind, and with it the way out.
+        EncodingError::IoError(error) => Error::io(path)(error),
+        error => Error::io(path)(error.into()),
+    }
 }

@@ -1,9 +1,11 @@
 //! TIFF height maps.
 
 use crate::error::{Error, Result};
-use crate::io::samples::{Layout, Opened, SampleRows, Samples, copy, len, part, part_mut};
+use crate::io::damage::{damaged, truncated};
+use crate::io::groups::{GroupDecoder, GroupedRows};
+use crate::io::samples::{Layout, NoData, Opened, Samples};
 use crate::io::{ReadOptions, limits, srgb};
-use crate::map::{HeightType, HeightsMut};
+use crate::map::HeightType;
 use std::fs::File;
 use std::io::{BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -11,16 +13,12 @@ use tiff::decoder::{ChunkType, Decoder, DecodingResult, DecodingSampleType, Limi
 use tiff::tags::{PlanarConfiguration, Tag};
 use tiff::{ColorType, TiffError};
 
-/// The rows of a TIFF: one strip or one row of tiles is decoded at a time.
-struct TiffRows {
+/// A TIFF by strips or rows of tiles.
+struct TiffChunks {
     path: PathBuf,
     decoder: Decoder<BufReader<File>>,
     layout: Layout,
     grid: Grid,
-    next_row: usize,
-    /// The decoded group, and its index.
-    group: Samples,
-    decoded: Option<usize>,
 }
 
 /// How a TIFF is cut into strips or tiles.
@@ -35,6 +33,13 @@ struct Grid {
     down: usize,
     /// Chunks for the same texels: one for each sample if samples stand in planes of their own.
     planes: usize,
+}
+
+impl Grid {
+    /// Samples of a texel that stand in one chunk.
+    fn samples_of_chunk(self, layout: Layout) -> usize {
+        if self.planes > 1 { 1 } else { layout.per_texel() }
+    }
 }
 
 /// Opens a TIFF: 8 and 16-bit integers, signed ones too, and floats of 16, 32 and 64 bits.
@@ -67,26 +72,24 @@ pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
             Grid { chunk_width, chunk_rows, across, down, planes }
         }
     };
-    // The decoder holds a chunk in the file's own type, of 8 bytes a sample at most, beside the decoded group.
-    let texels = (grid.across * grid.chunk_width) as u128 * grid.chunk_rows as u128;
-    let samples = (colours + usize::from(alpha)) as u128;
     let bits = decoder.colortype().map_err(reason(path))?.bit_depth();
-    limits::check(path, size, texels * samples * u128::from(bits.div_ceil(8)), options.max_bytes)?;
-
     let sample_type = decoder.image_chunk_buffer_layout(0).map_err(reason(path))?.sample_type;
     let depth = depth(path, sample_type, bits)?;
     let layout = Layout { size, depth, colours, alpha };
+    // The decoder's chunk in the file's own type, beside the group of chunks that becomes heights.
+    let chunk_samples = grid.chunk_width as u128 * grid.samples_of_chunk(layout) as u128;
+    let chunk_bytes = chunk_samples * u128::from(bits.div_ceil(8)) * grid.chunk_rows as u128;
+    let group_bytes = layout.row_bytes() as u128 * grid.chunk_rows.min(size.height()) as u128;
+    limits::check(path, size, chunk_bytes + group_bytes, options.max_bytes)?;
     let no_data = no_data(path, &mut decoder, sample_type)?;
     let profile = decoder.find_tag(Tag::IccProfile).ok().flatten().and_then(|value| value.into_u8_vec().ok());
     let mut warnings = Vec::new();
     if sample_type == Some(DecodingSampleType::F64) {
         warnings.push("its 64-bit floats are rounded to 32 bits".into());
     }
-    let rows_held = grid.chunk_rows.min(size.height());
-    let group = Samples::zeroed(depth, layout.per_row() * rows_held);
-    let rows = TiffRows { path: path.into(), decoder, layout, grid, next_row: 0, group, decoded: None };
+    let chunks = TiffChunks { path: path.into(), decoder, layout, grid };
     let says_srgb = profile.is_some_and(|profile| srgb::is_named_by(&profile));
-    Ok(Opened { no_data, says_srgb, warnings, ..Opened::new(rows) })
+    Ok(Opened { no_data, says_srgb, warnings, ..Opened::new(GroupedRows::new(chunks)) })
 }
 
 /// Colours or bands of a texel, and whether alpha follows them.
@@ -128,15 +131,16 @@ fn no_data(
     path: &Path,
     decoder: &mut Decoder<BufReader<File>>,
     sample_type: Option<DecodingSampleType>,
-) -> Result<Option<f32>> {
+) -> Result<Option<NoData>> {
     let Some(text) = decoder.find_tag(Tag::GdalNodata).map_err(reason(path))? else { return Ok(None) };
     let text = text.into_string().map_err(reason(path))?;
-    let value = text.trim_matches(['\0', ' ']).parse::<f64>().ok();
-    Ok(value.map(|value| match sample_type {
+    let text = text.trim_matches(['\0', ' ']);
+    let height = |value: f64| match sample_type {
         Some(DecodingSampleType::I8) => (value + 128.0) as f32,
         Some(DecodingSampleType::I16) => (value + 32768.0) as f32,
         _ => value as f32,
-    }))
+    };
+    Ok(text.parse().ok().map(|value| NoData { height: height(value), text: text.into() }))
 }
 
 /// A tag with one small number.
@@ -144,15 +148,18 @@ fn tag(path: &Path, decoder: &mut Decoder<BufReader<File>>, tag: Tag, default: u
     Ok(decoder.find_tag_unsigned(tag).map_err(reason(path))?.unwrap_or(default))
 }
 
-impl TiffRows {
-    /// Decodes the strip or the row of tiles `index`.
-    fn decode(&mut self, index: usize) -> Result<()> {
-        if self.decoded == Some(index) {
-            return Ok(());
-        }
-        self.decoded = None;
+impl GroupDecoder for TiffChunks {
+    fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    fn group_rows(&self) -> usize {
+        self.grid.chunk_rows
+    }
+
+    fn decode(&mut self, index: usize, group: &mut Samples) -> Result<()> {
         let Grid { chunk_width, chunk_rows, across, down, planes } = self.grid;
-        let per_texel = if planes > 1 { 1 } else { self.layout.per_texel() };
+        let per_texel = self.grid.samples_of_chunk(self.layout);
         let rows = chunk_rows.min(self.layout.size.height() - index * chunk_rows);
         for (plane, column) in (0..planes).flat_map(|plane| (0..across).map(move |column| (plane, column))) {
             let chunk = ((plane * down + index) * across + column) as u32;
@@ -166,11 +173,10 @@ impl TiffRows {
                 texel_stride: self.layout.per_texel(),
                 row_stride: self.layout.per_row(),
             };
-            if !place.put_samples(&samples, &mut self.group) {
-                return Err(Error::file(&self.path, "a strip or tile has the wrong size", DAMAGED));
+            if !place.put_samples(&samples, group) {
+                return Err(damaged(&self.path, "a strip or tile has the wrong size"));
             }
         }
-        self.decoded = Some(index);
         Ok(())
     }
 }
@@ -220,43 +226,12 @@ impl Place {
     }
 }
 
-impl SampleRows for TiffRows {
-    fn layout(&self) -> Layout {
-        self.layout
-    }
-
-    fn read(&mut self, mut rows: HeightsMut<'_>) -> Result<()> {
-        let per_row = self.layout.per_row();
-        let (mut done, wanted) = (0, len(&rows) / per_row);
-        while done < wanted {
-            let index = self.next_row / self.grid.chunk_rows;
-            self.decode(index)?;
-            let from = self.next_row - index * self.grid.chunk_rows;
-            let count = (self.grid.chunk_rows - from).min(wanted - done);
-            let decoded = part(self.group.as_ref(), from * per_row..(from + count) * per_row);
-            copy(decoded, &mut part_mut(&mut rows, done * per_row..(done + count) * per_row));
-            self.next_row += count;
-            done += count;
-        }
-        Ok(())
-    }
-
-    fn seek(&mut self, row: usize) -> Result<()> {
-        self.next_row = row;
-        Ok(())
-    }
-}
-
-const DAMAGED: &str = "it is damaged; copy or export it again";
-
 /// The decoder's reason, with the file and the way out.
 fn reason(path: &Path) -> impl FnOnce(TiffError) -> Error + '_ {
     move |error| match error {
-        TiffError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
-            Error::file(path, "the file ends before its last row: it is truncated", "copy or export it again")
-        }
+        TiffError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => truncated(path),
         // The decoders of compressed strips report damage as the system's errors, without a system's number.
-        TiffError::IoError(error) if error.raw_os_error().is_none() => Error::file(path, error, DAMAGED),
+        TiffError::IoError(error) if error.raw_os_error().is_none() => damaged(path, error),
         TiffError::IoError(error) => Error::io(path)(error),
         TiffError::LimitsExceeded => {
             Error::file(path, "it needs more memory than the limit", "raise it with --max-bytes")
@@ -264,6 +239,6 @@ fn reason(path: &Path) -> impl FnOnce(TiffError) -> Error + '_ {
         TiffError::UnsupportedError(error) => {
             Error::file(path, error, "convert it to 8 or 16-bit grey, or to 32-bit floats")
         }
-        error => Error::file(path, error, DAMAGED),
+        error => damaged(path, error),
     }
 }

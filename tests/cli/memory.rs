@@ -1,0 +1,57 @@
+//! Peak memory does not grow with the height of a map.
+
+#![cfg(target_os = "linux")]
+
+use super::support::{Folder, png};
+use std::process::{Child, Stdio};
+use std::time::Duration;
+
+const WIDTH: usize = 1024;
+const HEIGHTS: [usize; 2] = [2048, 8 * 2048];
+
+/// Less than the heights of the taller map (16 MiB of bytes), more than what threads and buffers differ by.
+const MOST_GROWTH: u64 = 8 << 20;
+
+/// The most memory that a child was seen to hold: its own record, read until it ends.
+fn peak_bytes(child: &mut Child) -> u64 {
+    let status = format!("/proc/{}/status", child.id());
+    let mut peak = 0;
+    while child.try_wait().unwrap().is_none() {
+        let text = std::fs::read_to_string(&status).unwrap_or_default();
+        let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let kibibytes = line.and_then(|line| line.trim().strip_suffix(" kB")?.parse::<u64>().ok());
+        peak = peak.max(kibibytes.unwrap_or(0) << 10);
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    assert!(child.wait().unwrap().success());
+    peak
+}
+
+fn assert_does_not_grow(folder: &Folder, input: impl Fn(usize) -> (String, Vec<String>), output: &str) {
+    let peaks = HEIGHTS.map(|height| {
+        let (input, arguments) = input(height);
+        let mut command = folder.command(&["normal", &input, "-o", output, "--backend", "cpu", "-q"]);
+        peak_bytes(&mut command.args(arguments).stderr(Stdio::inherit()).spawn().unwrap())
+    });
+    assert!(peaks[0] > 1 << 20, "{peaks:?}");
+    assert!(peaks[1] < peaks[0] + MOST_GROWTH, "{output}: {peaks:?} bytes for {HEIGHTS:?} rows");
+}
+
+#[test]
+fn a_taller_map_needs_no_more_memory() {
+    let folder = Folder::new();
+    let raw = |height: usize| {
+        let name = format!("{height}.raw");
+        std::fs::File::create(folder.path(&name)).unwrap().set_len((2 * WIDTH * height) as u64).unwrap();
+        (name, vec!["--raw".to_owned(), format!("{WIDTH}x{height}:u16le")])
+    };
+    let grey = |height: usize| {
+        let name = format!("{height}.png");
+        let codes = vec![0; WIDTH * height];
+        folder.file(&name, png(WIDTH, height, png::ColorType::Grayscale, png::BitDepth::Eight, &codes));
+        (name, Vec::new())
+    };
+    assert_does_not_grow(&folder, raw, "n.tif");
+    assert_does_not_grow(&folder, raw, "n.exr");
+    assert_does_not_grow(&folder, grey, "n.png");
+}
