@@ -28,7 +28,8 @@ struct Subject {
     name: String,
     baker: Baker,
     precision: Precision,
-    seconds_per_texel: f64,
+    /// Seconds that a texel takes, for each of HEIGHTS.
+    seconds_per_texel: [f64; HEIGHTS.len()],
 }
 
 /// The reference, and the CPU and every GPU of this machine in both precisions.
@@ -50,20 +51,25 @@ fn subjects() -> Vec<Subject> {
 impl Subject {
     fn new(name: &str, baker: Baker, precision: Precision) -> Self {
         let short = name.split(" (").next().unwrap_or(name);
-        let mut subject = Self { name: format!("{short} {precision}"), baker, precision, seconds_per_texel: 0.0 };
-        subject.seconds_per_texel = subject.try_out().expect("a small map is baked");
-        subject
+        let seconds_per_texel =
+            HEIGHTS.map(|heights| try_out(&baker, precision, heights).expect("a small map is baked"));
+        Self { name: format!("{short} {precision}"), baker, precision, seconds_per_texel }
     }
 
-    /// Seconds that a texel takes once everything is compiled.
-    fn try_out(&self) -> Result<f64> {
-        let map = terrain(1024, HeightType::U16)?;
-        let options = NormalOptions { precision: self.precision, ..NormalOptions::default() };
-        self.baker.normal(&map, &options)?;
-        let start = Instant::now();
-        self.baker.normal(&map, &options)?;
-        Ok(start.elapsed().as_secs_f64() / map.size().texels() as f64)
+    fn seconds(&self, texels: usize, heights: HeightType) -> f64 {
+        let index = HEIGHTS.iter().position(|known| *known == heights).expect("one of the measured types");
+        self.seconds_per_texel[index] * texels as f64
     }
+}
+
+/// Seconds that a texel takes once everything is compiled.
+fn try_out(baker: &Baker, precision: Precision, heights: HeightType) -> Result<f64> {
+    let map = terrain(512, heights)?;
+    let options = NormalOptions { precision, ..NormalOptions::default() };
+    baker.normal(&map, &options)?;
+    let start = Instant::now();
+    baker.normal(&map, &options)?;
+    Ok(start.elapsed().as_secs_f64() / map.size().texels() as f64)
 }
 
 fn main() {
@@ -124,10 +130,8 @@ fn bench_map<F: FnOnce() -> HeightMap>(
     bench("copy", &mut || copy(&source, black_box(&mut target)));
 
     let mut codes = Codes::zeroed(output, texels * format.channels.count());
-    for Subject { name, baker, precision, seconds_per_texel } in subjects {
-        if seconds_per_texel * texels as f64 > PATIENCE_SECONDS {
-            continue;
-        }
+    for subject in subjects.iter().filter(|subject| subject.seconds(texels, heights) <= PATIENCE_SECONDS) {
+        let Subject { name, baker, precision, .. } = subject;
         let options =
             NormalOptions { scale: Scale::texels(24), format, precision: *precision, ..NormalOptions::default() };
         bench(name, &mut || {

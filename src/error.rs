@@ -103,6 +103,7 @@ fn remedy(error: &std::io::Error) -> &'static str {
         ErrorKind::PermissionDenied => "; change its permissions, or choose another file",
         ErrorKind::ReadOnlyFilesystem => "; choose another folder",
         ErrorKind::NotADirectory | ErrorKind::AlreadyExists => "; a part of its path is a file, choose another folder",
+        ErrorKind::IsADirectory => "; it is a folder: name a file, or bake the folder with texbake bake",
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "; make room, or choose another disk",
         _ => "",
     }

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::io::INPUT_EXTENSIONS;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
-use walkdir::WalkDir;
+use walkdir::{DirEntry, WalkDir};
 
 /// A height map file, and how its name is put together.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -71,7 +71,10 @@ impl Search {
     }
 
     fn find_below(&self, root: &Path, found: &mut Vec<Found>, errors: &mut Vec<Error>) {
-        for entry in WalkDir::new(root).follow_links(true).sort_by_file_name() {
+        // What begins with a dot is some program's own: .git, macOS's ._wall_height.png.
+        let is_shown = |entry: &DirEntry| entry.depth() == 0 || !entry.file_name().as_encoded_bytes().starts_with(b".");
+        let entries = WalkDir::new(root).follow_links(true).sort_by_file_name().into_iter();
+        for entry in entries.filter_entry(is_shown) {
             match entry {
                 Ok(entry) if entry.file_type().is_file() => found.extend(self.height_map(root, entry.path())),
                 Ok(_) => {}

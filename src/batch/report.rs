@@ -169,9 +169,9 @@ impl ReportFile {
     /// complete.
     ///
     /// # Errors
-    /// [`Error::File`] if it is the input or output of a job, or cannot be replaced; [`Error::Io`].
-    pub fn create(path: &Path, jobs: &[Job]) -> Result<Self> {
-        targets::check_report(path, jobs)?;
+    /// [`Error::File`] if it is the input or output of a job or the settings file, or cannot be replaced; [`Error::Io`].
+    pub fn create(path: &Path, jobs: &[Job], settings: Option<&Path>) -> Result<Self> {
+        targets::check_report(path, jobs, settings)?;
         std::fs::create_dir_all(path.parent().unwrap_or(Path::new(""))).map_err(Error::io(path))?;
         Ok(Self { path: path.into(), file: Replacement::create(path)? })
     }

@@ -29,8 +29,8 @@ pub(super) fn refusals(jobs: &[Job]) -> Vec<Option<Error>> {
     jobs.iter().zip(&places).map(refusal).collect()
 }
 
-/// Fails if the report would overwrite an input or an output.
-pub(super) fn check_report(report: &Path, jobs: &[Job]) -> Result<()> {
+/// Fails if the report would overwrite an input, an output or the settings.
+pub(super) fn check_report(report: &Path, jobs: &[Job], settings: Option<&Path>) -> Result<()> {
     let refused = |what: &str, file: &Path| {
         let reason = format!("the report would overwrite the {what} {}", file.display());
         Err(Error::file(report, reason, "choose another name for the report"))
@@ -38,6 +38,9 @@ pub(super) fn check_report(report: &Path, jobs: &[Job]) -> Result<()> {
     let place_of_report = place(report);
     if let Some(input) = identity(&place_of_report).and_then(|report| inputs(jobs).remove(&report)) {
         return refused("input", input);
+    }
+    if let Some(settings) = settings.filter(|settings| place(settings) == place_of_report) {
+        return refused("settings file", settings);
     }
     match jobs.iter().find(|job| place(&job.output) == place_of_report) {
         Some(job) => refused("output", &job.output),

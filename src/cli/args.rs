@@ -59,8 +59,8 @@ pub struct NormalArguments {
 Folders are searched for files such as wall_height.png, wall_disp_2k.exr or Wall_Displacement.tif;
 files are taken as they are. tex/brick/wall_height_2k.png becomes brick/wall_normal_2k.png in --out.
 
-Settings come from the command line, else from the last [[override]] in texbake.toml whose glob
-matches the file's path below the folder, else from its [defaults]. A key is an option's name:
+Each setting comes from the command line, else from the last [[override]] in texbake.toml that has it
+and whose glob matches the file's path below the folder, else from [defaults]. A key is an option's name:
 
   suffix = [\"_height\", \"_dem\"]
   [defaults]

@@ -30,7 +30,8 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
         describe(config, &found);
     }
     let jobs = jobs(arguments, config.as_ref(), &found)?;
-    let report_file = reporting.report.as_deref().map(|path| ReportFile::create(path, &jobs)).transpose()?;
+    let settings = config.as_ref().map(|config| config.path.as_path());
+    let report_file = reporting.report.as_deref().map(|path| ReportFile::create(path, &jobs, settings)).transpose()?;
 
     let monitor = interruptible();
     let at_once = arguments.jobs.map_or_else(usual_jobs, NonZeroUsize::get);
@@ -39,7 +40,7 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     let outcomes = progress.during(|| run(&jobs, at_once, &monitor, &|event| progress.watch(event)));
     let time = start.elapsed();
 
-    let report = Report::new(&jobs, &outcomes, time, &errors, config.as_ref().map(|config| config.path.as_path()));
+    let report = Report::new(&jobs, &outcomes, time, &errors, settings);
     if !reporting.quiet {
         put(file_table(&jobs, &outcomes));
         put(summary(&report.totals, &jobs, &outcomes));

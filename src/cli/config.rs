@@ -41,11 +41,12 @@ impl Config {
         Self::parse(&path, &text).map(Some)
     }
 
-    /// The settings of the file at `path` below the folder that was searched: the last override that matches it,
-    /// then the defaults.
+    /// The settings of the file at `path` below the folder that was searched: key by key, those of the last override
+    /// that matches and has the key, then the defaults.
     pub fn settings(&self, path: &Path) -> PerFile {
-        let matching = self.overrides.iter().rev().find(|candidate| candidate.matches(path));
-        matching.map_or_else(|| self.defaults.clone(), |matching| matching.settings.clone().or(&self.defaults))
+        let matching = self.overrides.iter().rev().filter(|candidate| candidate.matches(path));
+        let overridden = matching.fold(PerFile::default(), |stronger, weaker| stronger.or(&weaker.settings));
+        overridden.or(&self.defaults)
     }
 
     /// The globs that match none of `paths`.
@@ -194,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_matching_override_goes_before_the_defaults() {
+    fn each_key_comes_from_the_last_override_that_has_it_then_from_the_defaults() {
         let config = parse(
             "suffix = ['_dem']\n[defaults]\nscale = 24\nfilter = 'sobel'\n\
              [[override]]\nglob = '**/dem_*'\nscale = 0.35\nbits = 16\n\
@@ -211,7 +212,7 @@ mod tests {
         assert_eq!(settings("wall.png"), expected("24", ""));
         assert_eq!(settings("dem_1.png"), expected("7/20", "16"));
         assert_eq!(settings("a/b/dem_1.png"), expected("7/20", "16"));
-        assert_eq!(settings("a/dem_x.png"), expected("7/3", ""));
+        assert_eq!(settings("a/dem_x.png"), expected("7/3", "16"));
         assert_eq!(config.suffixes, Some(vec!["_dem".to_owned()]));
         let paths = ["a/dem_x.png".into()];
         assert_eq!(config.unused(&paths).count(), 0);

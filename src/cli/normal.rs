@@ -22,7 +22,7 @@ pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
         baker: Arc::new(open_baker(&device)?),
     }];
     let reporting = &arguments.reporting;
-    let report_file = reporting.report.as_deref().map(|path| ReportFile::create(path, &jobs)).transpose()?;
+    let report_file = reporting.report.as_deref().map(|path| ReportFile::create(path, &jobs, None)).transpose()?;
 
     let monitor = interruptible();
     let progress = Progress::new(&jobs, &monitor, if reporting.quiet { Verbosity::Quiet } else { Verbosity::Warnings });

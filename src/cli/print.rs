@@ -3,8 +3,8 @@
 use comfy_table::{CellAlignment, Table, presets};
 use std::cmp::Reverse;
 use std::io::Write;
-use texbake::Device;
 use texbake::batch::{FileResult, Job, Outcome, Totals};
+use texbake::{Device, Scale};
 
 /// Longer folders get a table of what was not baked, and of the slowest.
 const TABLE_ROWS: usize = 40;
@@ -42,7 +42,7 @@ pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
     let (options, format) = (&job.options, job.options.format);
     let rate = ran.size.texels() as f64 / 1e6 / outcome.time.unwrap_or_default().as_secs_f64().max(1e-9);
     Some(format!(
-        "{}: {}, {} to {} {} {} {}, scale {}, {}; {} ({}); {}, {rate:.1} Mtexel/s, {} in, {} out",
+        "{}: {}, {} to {} {} {} {}, scale {}{}, {}; {} ({}); {}, {rate:.1} Mtexel/s, {} in, {} out",
         job.output.display(),
         ran.size,
         ran.height_type,
@@ -51,6 +51,7 @@ pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
         format.channels,
         format.convention,
         ran.scale,
+        if options.scale == Scale::default() { " (nearly flat: see --scale)" } else { "" },
         options.precision,
         ran.name(),
         job.baker.reason(),

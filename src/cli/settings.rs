@@ -15,7 +15,8 @@ use texbake::{
 #[derive(Args, Debug, Clone, Default, PartialEq)]
 pub struct Settings {
     /// Height of white (the code 255 or 65535, or the float 1) in widths of one texel: 24, 0.35, 7/3; negative for
-    /// depth maps [default: 1]
+    /// depth maps [default: 1,
+    /// nearly flat; most tiling textures take 8 to 50]
     #[arg(long, value_name = "NUMBER", value_parser = value::<Rational>, allow_hyphen_values = true)]
     #[arg(help_heading = SLOPE, conflicts_with_all = ["size", "depth"])]
     pub scale: Option<Rational>,
@@ -73,7 +74,8 @@ pub struct Settings {
     #[arg(long, value_name = "BYTES", value_parser = value::<ByteSize>, help_heading = INPUT)]
     pub max_bytes: Option<ByteSize>,
 
-    /// auto: a real GPU, else the CPU; gpu: that or an error; reference: plain code on one thread [default: auto]
+    /// auto: a real GPU, else the CPU; gpu: the best GPU, software too, or an error; reference: plain code on one
+    /// thread [default: auto]
     #[arg(long, value_enum, help_heading = DEVICE)]
     pub backend: Option<Backend>,
 

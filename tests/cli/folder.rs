@@ -217,3 +217,16 @@ fn names_that_are_no_unicode_are_baked_and_reported() {
     folder.assert_baked("out/w\u{fffd}nd_normal.png", &map, &NormalOptions::default());
     assert_eq!(folder.json("report.json")["files"][0]["input"], "tex/w\u{fffd}nd_height.png");
 }
+
+#[test]
+fn hidden_files_and_folders_are_left_alone() {
+    let folder = Folder::new();
+    folder.grey8("tex/wall_h.png", 9, 8, bumps8);
+    folder.grey8("tex/.git/x_h.png", 9, 8, bumps8);
+    folder.file("tex/._wall_h.png", "macOS keeps notes beside files on shares");
+    folder.run(&["bake", "tex", "--out", "out"]).ends(0);
+    assert_eq!(folder.files("out"), ["wall_normal.png"]);
+    // Unless they are asked for.
+    folder.run(&["bake", "tex/.git", "--out", "own"]).ends(0);
+    assert_eq!(folder.files("own"), ["x_normal.png"]);
+}

@@ -12,7 +12,7 @@ fn a_map_is_baked_with_the_defaults() {
     let run = folder.run(&["normal", "height.png", "-o", "normal.png"]).ends(0);
     folder.assert_baked("normal.png", &map, &NormalOptions::default());
     assert_eq!(run.stdout, "");
-    let line = run.line("normal.png: 37 x 23, u16 to unorm 8 xyz gl, scale 1, exact; ");
+    let line = run.line("normal.png: 37 x 23, u16 to unorm 8 xyz gl, scale 1 (nearly flat: see --scale), exact; ");
     assert!(line.contains(" Mtexel/s") && line.contains(" in, "), "{line}");
     assert_eq!(run.stderr.lines().count(), 1);
 }

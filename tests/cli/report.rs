@@ -130,3 +130,13 @@ fn files_that_were_never_opened_have_no_time() {
     }
     assert_eq!(report["totals"]["failed"], 2);
 }
+
+#[test]
+fn a_report_does_not_replace_the_settings() {
+    let folder = Folder::new();
+    folder.grey8("tex/wall_h.png", 9, 8, bumps8);
+    let settings = folder.file("tex/texbake.toml", "[defaults]\nscale = 2\n");
+    let run = folder.run(&["bake", "tex", "--out", "out", "--report", "tex/texbake.toml"]).ends(1);
+    assert!(run.stderr.contains("the report would overwrite the settings file"), "{}", run.stderr);
+    assert_eq!(std::fs::read_to_string(settings).unwrap(), "[defaults]\nscale = 2\n");
+}
