@@ -4,7 +4,7 @@ use comfy_table::{CellAlignment, Table, presets};
 use std::cmp::Reverse;
 use std::io::Write;
 use texbake::batch::{FileResult, Job, Outcome, Totals};
-use texbake::{Device, Scale};
+use texbake::{Device, HeightType, Scale};
 
 /// Longer folders get a table of what was not baked, and of the slowest.
 const TABLE_ROWS: usize = 40;
@@ -40,6 +40,8 @@ pub fn file_line(place: &str, job: &Job, outcome: &Outcome) -> String {
 pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
     let ran = outcome.result.as_ref().ok()?;
     let (options, format) = (&job.options, job.options.format);
+    // Codes from 0 to white over one texel; floats have a height of their own.
+    let nearly_flat = options.scale == Scale::default() && ran.height_type != HeightType::F32;
     let rate = ran.size.texels() as f64 / 1e6 / outcome.time.unwrap_or_default().as_secs_f64().max(1e-9);
     Some(format!(
         "{}: {}, {} to {} {} {} {}, scale {}{}, {}; {} ({}); {}, {rate:.1} Mtexel/s, {} in, {} out",
@@ -51,7 +53,7 @@ pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
         format.channels,
         format.convention,
         ran.scale,
-        if options.scale == Scale::default() { " (nearly flat: see --scale)" } else { "" },
+        if nearly_flat { " (nearly flat: see --scale)" } else { "" },
         options.precision,
         ran.name(),
         job.baker.reason(),
