@@ -108,15 +108,25 @@ impl<'a> CodesRef<'a> {
 }
 
 impl CodesMut<'_> {
+    /// The codes, to read.
+    pub fn as_ref(&self) -> CodesRef<'_> {
+        match self {
+            Self::U8(codes) => CodesRef::U8(codes),
+            Self::U16(codes) => CodesRef::U16(codes),
+            Self::F16(codes) => CodesRef::F16(codes),
+            Self::F32(codes) => CodesRef::F32(codes),
+        }
+    }
+
     /// Number of codes.
     #[allow(clippy::len_without_is_empty, reason = "a map is never empty")]
     pub fn len(&self) -> usize {
-        match self {
-            Self::U8(codes) => codes.len(),
-            Self::U16(codes) => codes.len(),
-            Self::F16(codes) => codes.len(),
-            Self::F32(codes) => codes.len(),
-        }
+        self.as_ref().len()
+    }
+
+    /// How a code is stored.
+    pub fn depth(&self) -> Depth {
+        self.as_ref().depth()
     }
 
     /// The codes `range`, to write.
@@ -136,16 +146,6 @@ impl CodesMut<'_> {
             Self::U16(codes) => codes.chunks_mut(count).map(CodesMut::U16).collect(),
             Self::F16(codes) => codes.chunks_mut(count).map(CodesMut::F16).collect(),
             Self::F32(codes) => codes.chunks_mut(count).map(CodesMut::F32).collect(),
-        }
-    }
-
-    /// How a code is stored.
-    pub fn depth(&self) -> Depth {
-        match self {
-            Self::U8(_) => Depth::Bits8,
-            Self::U16(_) => Depth::Bits16,
-            Self::F16(_) => Depth::Float16,
-            Self::F32(_) => Depth::Float32,
         }
     }
 
