@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use std::any::Any;
 use std::collections::{HashMap, HashSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Duration;
 use wgpu::{
@@ -25,6 +26,7 @@ pub(crate) struct Device {
     modules: Mutex<HashMap<KernelSource, ShaderModule>>,
     pipelines: Mutex<HashMap<NormalKernel, ComputePipeline>>,
     idle: Mutex<Vec<Slot>>,
+    next_nonce: AtomicU32,
     /// Kernels whose bytes were compared with the reference's.
     tested: Mutex<HashSet<NormalKernel>>,
     /// Why the device cannot be used any more.
@@ -64,6 +66,7 @@ impl Device {
             modules: Mutex::default(),
             pipelines: Mutex::default(),
             idle: Mutex::default(),
+            next_nonce: AtomicU32::new(1),
             tested: Mutex::default(),
             lost: Arc::default(),
         }
@@ -204,6 +207,12 @@ impl Device {
                 Slot::new(&self.device, heights_bytes, codes_bytes)
             }
         }
+    }
+
+    /// What marks the rows of a dispatch: another odd number for each of 2^31, so that neither a slot's earlier
+    /// content nor a cleared word passes for it.
+    pub fn fresh_nonce(&self) -> u32 {
+        self.next_nonce.fetch_add(2, Ordering::Relaxed)
     }
 
     /// Keeps a slot for the next bake.

@@ -8,7 +8,6 @@ use crate::map::CodesMut;
 use crate::ops::normal::NormalPlan;
 use crate::stream::{Band, CodeSink, HeightBand, HeightBands};
 use std::collections::VecDeque;
-use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 use wgpu::{Buffer, CommandEncoderDescriptor, ComputePipeline, MapMode, PollType};
@@ -86,7 +85,7 @@ impl<'a> Transfer<'a> {
             codes: 0,
             codes_row_words: words(codes_row_bytes),
             marks: words(codes_row_bytes * rows),
-            nonce: fresh_nonce(),
+            nonce: device.fresh_nonce(),
             ..normal::params(plan)
         };
         write_rows(&slot.upload, band, row_bytes).map_err(|reason| device.error(reason))?;
@@ -169,13 +168,6 @@ pub(super) fn dispatch(
     pass.set_pipeline(pipeline);
     pass.set_bind_group(0, bindings, &[]);
     pass.dispatch_workgroups(width.div_ceil(TEXELS_PER_INVOCATION * WORKGROUP) as u32, rows as u32, 1);
-}
-
-/// What marks the rows of a dispatch: another odd number for each of 2^31, so that neither a buffer's earlier content
-/// nor a cleared word passes for it.
-fn fresh_nonce() -> u32 {
-    static NEXT: AtomicU32 = AtomicU32::new(1);
-    NEXT.fetch_add(2, Ordering::Relaxed)
 }
 
 /// Copies rows of codes without their padding.
