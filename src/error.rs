@@ -37,6 +37,20 @@ pub enum Error {
         value: f32,
     },
 
+    /// A component of a float normal map is NaN, infinite or beyond 65536: it belongs to no direction.
+    #[error(
+        "the normal at column {x}, row {y} has a component of {value}: components must be between -65536 and 65536; \
+         texbake check --repair makes such texels flat"
+    )]
+    NoDirection {
+        /// Column of the texel, from 0 on the left.
+        x: usize,
+        /// Row of the texel, from 0 at the top.
+        y: usize,
+        /// The component that was found.
+        value: f32,
+    },
+
     /// The operating system refused to read or write.
     #[error("{}: {source}{}", path.display(), remedy(source))]
     Io {

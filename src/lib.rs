@@ -77,12 +77,14 @@ mod names;
 mod ops;
 pub mod stream;
 
-pub use baker::{Baker, Ran};
+pub use baker::{Baked, Baker, Blended, Maps, Ran};
 pub use devices::{Device, devices};
 pub use error::{Error, Result};
-pub use exact::{AxisScale, Rational, Scale};
+pub use exact::{AxisScale, Rational, Scale, Weights};
 pub use map::{
-    Channels, Codes, CodesMut, CodesRef, Convention, Depth, Edge, Edges, Encoding, Grid, HeightMap, HeightType,
-    Heights, HeightsMut, NormalFormat, NormalMap, Size,
+    Channels, CodeMap, Codes, CodesMut, CodesRef, Convention, Depth, Edge, Edges, Encoding, Grid, HeightMap,
+    HeightType, Heights, HeightsMut, MapFormat, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Size,
 };
-pub use ops::normal::{Filter, NormalOptions, Precision};
+pub use ops::Precision;
+pub use ops::bake::{BakeOptions, Filter, NormalOptions, ParallaxOptions};
+pub use ops::blend::{BlendInputs, BlendMethod, BlendOptions};

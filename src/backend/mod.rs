@@ -1,12 +1,15 @@
-//! Where a bake runs.
+//! Where an operation runs.
 
 pub mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 
 use crate::error::Result;
-use crate::ops::normal::NormalPlan;
-use crate::stream::{CodeSink, HeightBands};
+use crate::map::CodesMut;
+use crate::ops::bake::BakePlan;
+use crate::ops::blend::BlendPlan;
+use crate::ops::parallax::ParallaxPlan;
+use crate::stream::{CodeSink, HeightBands, LayerBands};
 
 /// Runs operations. One required method for each: a missing twin is a compile error.
 pub(crate) trait Backend: Send + Sync {
@@ -17,18 +20,77 @@ pub(crate) trait Backend: Send + Sync {
     fn device(&self) -> String;
 
     /// Rows of a band that suit this backend when rows are read and written meanwhile.
-    fn band_rows(&self, plan: &NormalPlan) -> usize;
+    fn band_rows(&self, row: RowBytes) -> usize;
 
-    /// Rows of a band that suit this backend when the map lies in memory.
-    fn map_band_rows(&self, plan: &NormalPlan) -> usize {
-        self.band_rows(plan)
+    /// Rows of a band that suit this backend when the maps lie in memory.
+    fn map_band_rows(&self, row: RowBytes) -> usize {
+        self.band_rows(row)
     }
 
-    /// Bakes all bands of a height map into the rows of a normal map.
+    /// Bakes all bands of a height map into the rows of the plan's maps, one sink for each.
     ///
     /// # Errors
-    /// What the bands or the sink report, or [`crate::Error::Device`].
-    fn normal(&self, plan: &NormalPlan, bands: &mut dyn HeightBands, sink: &mut dyn CodeSink) -> Result<()>;
+    /// What the bands or the sinks report, or [`crate::Error::Device`].
+    fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()>;
+
+    /// Blends all bands of two normal maps and, perhaps, a mask into the rows of a normal map.
+    ///
+    /// # Errors
+    /// As [`Backend::bake`].
+    fn blend(&self, plan: &BlendPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()>;
+
+    /// Bakes all bands of a height map and a normal map into the rows of a parallax map.
+    ///
+    /// # Errors
+    /// As [`Backend::bake`].
+    fn parallax(&self, plan: &ParallaxPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()>;
+}
+
+/// Bytes of one row on its way through an operation.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RowBytes {
+    /// Of all inputs.
+    pub read: usize,
+    /// Of all outputs.
+    pub written: usize,
+}
+
+impl RowBytes {
+    /// Of a bake.
+    pub fn of_bake(plan: &BakePlan) -> Self {
+        let width = plan.size.width();
+        Self { read: width * plan.height_type.bytes(), written: width * plan.texel_bytes() }
+    }
+
+    /// Of a blend.
+    pub fn of_blend(plan: &BlendPlan) -> Self {
+        let inputs: usize = plan.inputs.iter().map(|input| input.texel().bytes()).sum();
+        let mask = plan.mask.map_or(0, |mask| mask.height_type.bytes());
+        let width = plan.size.width();
+        Self { read: width * (inputs + mask), written: width * plan.format.texel().bytes() }
+    }
+
+    /// Of a parallax map from heights and normals.
+    pub fn of_parallax(plan: &ParallaxPlan) -> Self {
+        let width = plan.size.width();
+        let read = plan.height_type.bytes() + plan.input.texel().bytes();
+        Self { read: width * read, written: width * plan.format.texel().bytes() }
+    }
+}
+
+/// Fills the next `rows` rows of several maps at once.
+///
+/// # Errors
+/// What the sinks report.
+pub(crate) fn fill_rows(
+    sinks: &mut [&mut dyn CodeSink],
+    rows: usize,
+    fill: impl FnOnce(&mut [CodesMut<'_>]),
+) -> Result<()> {
+    let mut maps: Vec<CodesMut<'_>> = sinks.iter_mut().map(|sink| sink.room(rows)).collect::<Result<_>>()?;
+    fill(&mut maps);
+    drop(maps);
+    sinks.iter_mut().try_for_each(|sink| sink.filled())
 }
 
 /// A backend and its device in one piece: `cpu, 2 threads, avx512`.

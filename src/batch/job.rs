@@ -1,11 +1,11 @@
 //! Files baked side by side.
 
 use super::targets;
-use crate::baker::{Baker, Ran};
+use crate::baker::{Baked, Baker};
 use crate::error::{Error, Result};
 use crate::io::{ReadOptions, create_normals, open_heights};
 use crate::map::Size;
-use crate::ops::normal::NormalOptions;
+use crate::ops::bake::NormalOptions;
 use crate::stream::Monitor;
 use std::any::Any;
 use std::cell::RefCell;
@@ -35,7 +35,7 @@ pub struct Job {
 pub struct Outcome {
     /// How it ran; [`Error::Cancelled`] if it was stopped or never begun, [`Error::File`] if its output would overwrite
     /// an input, or is the output of another job too.
-    pub result: Result<Ran>,
+    pub result: Result<Baked>,
     /// What the user should know about the file.
     pub warnings: Vec<String>,
     /// From opening the input to closing the output; `None` if the input was never opened.
@@ -139,8 +139,8 @@ impl Outcome {
 }
 
 /// Says so if the scale had to be rounded.
-fn inexact_scale(ran: &Ran) -> Option<String> {
-    let scale = ran.scale;
+fn inexact_scale(baked: &Baked) -> Option<String> {
+    let scale = baked.scale;
     (!scale.exact).then(|| format!("the scale has too many digits: {scale}, the nearest one that fits, was used"))
 }
 

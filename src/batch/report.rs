@@ -4,7 +4,7 @@ use super::{Job, Outcome, targets};
 use crate::error::{Error, Result};
 use crate::io::ReadOptions;
 use crate::io::replace::Replacement;
-use crate::ops::normal::NormalOptions;
+use crate::ops::bake::NormalOptions;
 use serde::{Serialize, Serializer};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -199,8 +199,8 @@ impl Totals {
                 FileResult::Stopped => totals.stopped += 1,
                 FileResult::NotBegun => totals.not_begun += 1,
             }
-            if let Ok(ran) = &outcome.result {
-                totals.texels += ran.size.texels() as u64;
+            if let Ok(baked) = &outcome.result {
+                totals.texels += baked.ran.size.texels() as u64;
                 totals.bytes_in += outcome.bytes_in;
                 totals.bytes_out += outcome.bytes_out;
             }
@@ -225,10 +225,11 @@ impl FileResult {
 impl FileReport {
     fn new(job: &Job, outcome: &Outcome) -> Self {
         let result = FileResult::of(outcome);
-        let ran = outcome.result.as_ref().ok();
+        let baked = outcome.result.as_ref().ok();
+        let ran = baked.map(|baked| &baked.ran);
         let ratio =
             |part: i32, q: u32| crate::Rational::new(part.into(), q.into()).map_or(String::new(), |r| r.to_string());
-        let scale = ran.map(|ran| ran.scale);
+        let scale = baked.map(|baked| baked.scale);
         Self {
             input: job.input.clone(),
             output: job.output.clone(),
@@ -242,7 +243,7 @@ impl FileReport {
             fallback: ran.and_then(|ran| ran.fallback.clone()),
             width: ran.map(|ran| ran.size.width()),
             height: ran.map(|ran| ran.size.height()),
-            depth: ran.map(|ran| ran.height_type.to_string()),
+            depth: baked.map(|baked| baked.height_type.to_string()),
             scale: scale.map(|s| UsedScale { x: ratio(s.x, s.q), y: ratio(s.y, s.q), exact: s.exact }),
             milliseconds: outcome.time.map(|time| (time.as_secs_f64() * 1e6).round() / 1e3),
             bytes_in: outcome.bytes_in,

@@ -4,7 +4,7 @@ use comfy_table::{CellAlignment, Table, presets};
 use std::cmp::Reverse;
 use std::io::Write;
 use texbake::batch::{FileResult, Job, Outcome, Totals};
-use texbake::{Device, HeightType, Scale};
+use texbake::{Baked, Device, HeightType, Scale};
 
 /// Longer folders get a table of what was not baked, and of the slowest.
 const TABLE_ROWS: usize = 40;
@@ -23,12 +23,12 @@ pub fn put(text: impl std::fmt::Display) {
 /// What became of one file of a folder.
 pub fn file_line(place: &str, job: &Job, outcome: &Outcome) -> String {
     match (&outcome.result, job.failure(outcome)) {
-        (Ok(ran), _) => format!(
+        (Ok(baked), _) => format!(
             "[{place}] baked {} -> {}, {}, {}, {}",
             job.input.display(),
             job.output.display(),
-            ran.size,
-            ran.height_type,
+            baked.ran.size,
+            baked.height_type,
             milliseconds(outcome)
         ),
         (Err(_), Some(reason)) => format!("[{place}] failed {reason}"),
@@ -38,24 +38,24 @@ pub fn file_line(place: &str, job: &Job, outcome: &Outcome) -> String {
 
 /// What was baked, where and why there, and how fast.
 pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
-    let ran = outcome.result.as_ref().ok()?;
+    let baked = outcome.result.as_ref().ok()?;
     let (options, format) = (&job.options, job.options.format);
     // Codes from 0 to white over one texel; floats have a height of their own.
-    let nearly_flat = options.scale == Scale::default() && ran.height_type != HeightType::F32;
-    let rate = ran.size.texels() as f64 / 1e6 / outcome.time.unwrap_or_default().as_secs_f64().max(1e-9);
+    let nearly_flat = options.scale == Scale::default() && baked.height_type != HeightType::F32;
+    let rate = baked.ran.size.texels() as f64 / 1e6 / outcome.time.unwrap_or_default().as_secs_f64().max(1e-9);
     Some(format!(
         "{}: {}, {} to {} {} {} {}, scale {}{}, {}; {} ({}); {}, {rate:.1} Mtexel/s, {} in, {} out",
         job.output.display(),
-        ran.size,
-        ran.height_type,
+        baked.ran.size,
+        baked.height_type,
         format.encoding,
         format.depth,
         format.channels,
         format.convention,
-        ran.scale,
+        baked.scale,
         if nearly_flat { " (nearly flat: see --scale)" } else { "" },
         options.precision,
-        ran.name(),
+        baked.ran.name(),
         job.baker.reason(),
         milliseconds(outcome),
         bytes(outcome.bytes_in),
@@ -83,7 +83,7 @@ fn rows_of<'a>(files: impl Iterator<Item = (&'a Job, &'a Outcome)>) -> String {
     let mut table = plain_table(&["file", "size", "depth", "ms", "result"], &[3]);
     for (job, outcome) in files {
         let (size, depth) = match &outcome.result {
-            Ok(ran) => (ran.size.to_string(), ran.height_type.to_string()),
+            Ok(baked) => (baked.ran.size.to_string(), baked.height_type.to_string()),
             Err(_) => Default::default(),
         };
         let time = outcome.time.map_or(String::new(), |time| format!("{:.1}", time.as_secs_f64() * 1e3));
@@ -107,7 +107,8 @@ pub fn summary(totals: &Totals, jobs: &[Job], outcomes: &[Outcome]) -> String {
         }
     }
     let mut places: Vec<String> = Vec::new();
-    for (job, ran) in jobs.iter().zip(outcomes).filter_map(|(job, outcome)| Some((job, outcome.result.as_ref().ok()?)))
+    for (job, Baked { ran, .. }) in
+        jobs.iter().zip(outcomes).filter_map(|(job, outcome)| Some((job, outcome.result.as_ref().ok()?)))
     {
         let reason = ran.fallback.as_deref().unwrap_or(job.baker.reason());
         let place = format!("{} ({reason})", ran.name());

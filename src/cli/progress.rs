@@ -85,7 +85,7 @@ impl<'a> Progress<'a> {
                     lines.extend(job.failure(outcome).map(|reason| format!("error: {reason}")));
                 }
                 if self.verbosity != Verbosity::Quiet {
-                    let fallback = outcome.result.as_ref().ok().and_then(|ran| ran.fallback.as_ref());
+                    let fallback = outcome.result.as_ref().ok().and_then(|baked| baked.ran.fallback.as_ref());
                     let fallback = fallback.map(|reason| format!("{reason}; the CPU baked it instead"));
                     let warnings = outcome.warnings.iter().chain(fallback.as_ref());
                     lines.extend(warnings.map(|text| format!("warning: {}: {text}", job.input.display())));

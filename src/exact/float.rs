@@ -5,13 +5,13 @@
 
 use half::f16;
 
-/// The nearest f32 to `a / sqrt(s)`; `|a| < 2^45`, `a^2 <= s < 2^92`.
+/// The nearest f32 to `a / sqrt(s)`; `|a| < 2^53`, `a^2 <= s < 2^107`.
 pub(crate) fn nearest_f32(a: i64, s: u128) -> f32 {
     // More than 25 bits, the last one sticky, round to 24 as the number itself does.
     rounded_to_odd(a, s, 26) as f32
 }
 
-/// The nearest f16 to `a / sqrt(s)`; `|a| < 2^45`, `a^2 <= s < 2^92`.
+/// The nearest f16 to `a / sqrt(s)`; `|a| < 2^53`, `a^2 <= s < 2^107`.
 pub(crate) fn nearest_f16(a: i64, s: u128) -> f16 {
     // At most 24 bits are an f32 without rounding, so only the last conversion rounds.
     f16::from_f32(rounded_to_odd(a, s, 22) as f32)
@@ -46,19 +46,21 @@ fn power_of_two(exponent: i32) -> f64 {
 
 /// An unsigned integer of 256 bits, for products that outgrow u128.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Wide {
+pub(super) struct Wide {
     high: u128,
     low: u128,
 }
 
 impl Wide {
-    fn product(a: u128, b: u64) -> Self {
+    /// `a b`.
+    pub fn product(a: u128, b: u64) -> Self {
         let (a1, a0, b) = (a >> 64, a & u128::from(u64::MAX), u128::from(b));
         let (upper, carried) = (a1 * b, a0 * b);
         let (low, carry) = carried.overflowing_add(upper << 64);
         Self { high: (upper >> 64) + u128::from(carry), low }
     }
 
+    /// `a 2^by`, by < 256.
     fn shifted(a: u128, by: u32) -> Self {
         match by {
             0 => Self { high: 0, low: a },

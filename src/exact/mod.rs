@@ -2,10 +2,15 @@
 
 mod float;
 mod rational;
+mod read;
 mod round;
 mod scale;
+mod weights;
 
+use float::Wide;
 pub(crate) use float::{nearest_f16, nearest_f32};
 pub use rational::Rational;
+pub(crate) use read::CodeReading;
 pub(crate) use round::CodeRounding;
 pub use scale::{AxisScale, Scale};
+pub use weights::Weights;

@@ -1,6 +1,7 @@
 //! The nearest integer code to a component A / sqrt(S), decided in integers.
 
-use crate::map::{Depth, Encoding};
+use super::Wide;
+use crate::map::{Depth, Encoding, TexelFormat};
 
 /// How one integer encoding rounds.
 ///
@@ -23,8 +24,9 @@ pub(crate) struct CodeRounding {
 }
 
 impl CodeRounding {
-    /// The rounding of an integer encoding; `None` for floats.
-    pub fn new(encoding: Encoding, depth: Depth) -> Option<Self> {
+    /// The rounding of an integer format; `None` for floats.
+    pub fn new(format: TexelFormat) -> Option<Self> {
+        let TexelFormat { encoding, depth, .. } = format;
         let l = encoding.greatest_code(depth)? as i32;
         let mask = match depth {
             Depth::Bits8 => 0xff,
@@ -37,7 +39,7 @@ impl CodeRounding {
 
     /// The code of the component `a / sqrt(s)`, as it is stored.
     ///
-    /// `|a| < 2^45`, `a^2 <= s < 2^92`: every product stays below 2^124.
+    /// `|a| < 2^53`, `a^2 <= s < 2^107`.
     pub fn code(&self, a: i64, s: u128) -> u32 {
         // The estimate is off by far less than half a code, so one comparison decides between two codes.
         let estimate = a as f64 / (s as f64).sqrt();
@@ -49,9 +51,22 @@ impl CodeRounding {
 
     /// Whether `m a >= t sqrt(s)`.
     fn reaches(&self, a: i64, s: u128, t: i32) -> bool {
-        let square = |value: i64| u128::from(value.unsigned_abs()).pow(2);
-        let signed = |sign: i64, magnitude: u128| sign.signum() as i128 * magnitude as i128;
-        signed(a, square(self.m.into()) * square(a)) >= signed(t.into(), square(t.into()) * s)
+        let square = |value: i32| u64::from(value.unsigned_abs()).pow(2);
+        let mmaa = Wide::product(u128::from(a.unsigned_abs()).pow(2), square(self.m));
+        let tts = Wide::product(s, square(t));
+        match (a < 0, t < 0) {
+            (false, true) => true,
+            (true, false) => false,
+            (false, false) => mmaa >= tts,
+            (true, true) => mmaa <= tts,
+        }
+    }
+
+    /// The code of a float component: floor((m v + c + 1) / 2) in f32, in this order: v (m/2) + (c + 1)/2, whose
+    /// constants are exact.
+    pub fn code_of_float(&self, component: f32) -> u32 {
+        let code = component * (self.m as f32 * 0.5) + (self.c as f32 + 1.0) * 0.5;
+        self.stored(code.floor() as i32)
     }
 
     /// The bits that store a code.

@@ -25,7 +25,7 @@ pub use format::{INPUT_EXTENSIONS, default_format};
 pub use raw::{RawKind, RawLayout};
 
 use crate::error::Result;
-use crate::map::{HeightMap, NormalFormat, NormalMap, Size};
+use crate::map::{HeightMap, NormalFormat, NormalMap, Size, TexelFormat};
 use crate::stream::{RowSink, RowSource, read_map};
 use channel::HeightRows;
 use format::{FileFormat, OutputFormat};
@@ -110,6 +110,10 @@ pub fn open_heights(path: &Path, options: &ReadOptions) -> Result<HeightFile> {
 /// [`crate::Error::Parameter`] if the format cannot hold `format`; [`crate::Error::File`] for an unknown extension or
 /// a name that cannot be replaced; [`crate::Error::Io`].
 pub fn create_normals(path: &Path, size: Size, format: NormalFormat) -> Result<Box<dyn RowSink>> {
+    create_codes(path, size, format.texel())
+}
+
+fn create_codes(path: &Path, size: Size, format: TexelFormat) -> Result<Box<dyn RowSink>> {
     format.check()?;
     match OutputFormat::of(path)? {
         OutputFormat::Png => png::create(path, size, format),

@@ -2,7 +2,7 @@
 
 use super::replace::Replacement;
 use crate::error::{Error, Result};
-use crate::map::{CodesRef, Depth, NormalFormat, Size};
+use crate::map::{CodesRef, Depth, Size, TexelFormat};
 use crate::stream::RowSink;
 use std::path::Path;
 
@@ -37,9 +37,9 @@ impl FileSink {
         encoder: impl RowEncoder + 'static,
         replacement: Replacement,
         size: Size,
-        format: NormalFormat,
+        format: TexelFormat,
     ) -> Box<dyn RowSink> {
-        let row_codes = size.width() * format.channels.count();
+        let row_codes = format.row_codes(size.width());
         let (depth, height) = (format.depth, size.height());
         let encoder = Box::new(encoder);
         Box::new(Self { encoder, replacement, depth, row_codes, height, next_row: Some(0), first_row_left: false })
@@ -97,7 +97,7 @@ fn depth_of(codes: CodesRef<'_>) -> Depth {
 }
 
 /// A file format that cannot hold what was asked for.
-pub(super) fn cannot_hold(path: &Path, format: NormalFormat, remedy: &str) -> Error {
+pub(super) fn cannot_hold(path: &Path, format: TexelFormat, remedy: &str) -> Error {
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
     let value = format!("{} with {} bits, for {name}", format.encoding, format.depth);
     Error::parameter("encoding", value, remedy)
@@ -107,6 +107,7 @@ pub(super) fn cannot_hold(path: &Path, format: NormalFormat, remedy: &str) -> Er
 mod tests {
     use super::*;
     use crate::io::replace::Output;
+    use crate::map::NormalFormat;
     use std::io::{ErrorKind, Write};
 
     /// Writes to a full disk and says nothing, as deflate on its way to the file.
@@ -137,7 +138,7 @@ mod tests {
         let replacement = Replacement::create(&folder.join("n.png")).unwrap();
         let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
         let encoder = Deaf { output: replacement.output_into(full), waits };
-        FileSink::boxed(encoder, replacement, Size::new(2, 1).unwrap(), NormalFormat::default())
+        FileSink::boxed(encoder, replacement, Size::new(2, 1).unwrap(), NormalFormat::default().texel())
     }
 
     fn assert_says_full(result: Result<()>) {

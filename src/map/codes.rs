@@ -96,6 +96,16 @@ impl<'a> CodesRef<'a> {
         }
     }
 
+    /// The codes `range`.
+    pub fn slice(&self, range: std::ops::Range<usize>) -> CodesRef<'a> {
+        match self {
+            Self::U8(codes) => CodesRef::U8(&codes[range]),
+            Self::U16(codes) => CodesRef::U16(&codes[range]),
+            Self::F16(codes) => CodesRef::F16(&codes[range]),
+            Self::F32(codes) => CodesRef::F32(&codes[range]),
+        }
+    }
+
     /// The codes as bytes in this machine's order.
     pub fn bytes(&self) -> &'a [u8] {
         match self {

@@ -90,6 +90,55 @@ pub struct NormalFormat {
     pub convention: Convention,
 }
 
+/// What the codes of a parallax map mean: one signed component, n_z (2h - 1) (FGED2 section 7.7).
+///
+/// The default is 8-bit snorm. PNG has no signed numbers: there the same codes are stored biased, 128 for zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ParallaxFormat {
+    /// How the value becomes a code.
+    pub encoding: Encoding,
+    /// How a code is stored: 8 or 16 bits for the integer encodings, a float for [`Encoding::Float`].
+    pub depth: Depth,
+}
+
+/// How a texel of any map is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct TexelFormat {
+    /// How a component becomes a code.
+    pub encoding: Encoding,
+    /// How a code is stored.
+    pub depth: Depth,
+    /// Codes of a texel.
+    pub channels: usize,
+}
+
+/// The format of a [`super::CodeMap`]: [`NormalFormat`] or [`ParallaxFormat`].
+pub trait MapFormat: Copy + sealed::Stored {}
+
+impl MapFormat for NormalFormat {}
+impl MapFormat for ParallaxFormat {}
+
+mod sealed {
+    use super::{NormalFormat, ParallaxFormat, TexelFormat};
+
+    /// What a format says about storage; for this crate alone.
+    pub trait Stored {
+        fn stored(&self) -> TexelFormat;
+    }
+
+    impl Stored for NormalFormat {
+        fn stored(&self) -> TexelFormat {
+            self.texel()
+        }
+    }
+
+    impl Stored for ParallaxFormat {
+        fn stored(&self) -> TexelFormat {
+            self.texel()
+        }
+    }
+}
+
 impl Encoding {
     /// The largest code L of a depth of integers, for v = 1 (before biased adds its offset).
     ///
@@ -158,8 +207,39 @@ impl Edges {
 }
 
 impl NormalFormat {
+    /// How a texel is stored.
+    pub(crate) fn texel(&self) -> TexelFormat {
+        TexelFormat { encoding: self.encoding, depth: self.depth, channels: self.channels.count() }
+    }
+}
+
+impl Default for ParallaxFormat {
+    /// 8-bit snorm.
+    fn default() -> Self {
+        Self { encoding: Encoding::Snorm, depth: Depth::Bits8 }
+    }
+}
+
+impl ParallaxFormat {
+    /// How a texel is stored.
+    pub(crate) fn texel(&self) -> TexelFormat {
+        TexelFormat { encoding: self.encoding, depth: self.depth, channels: 1 }
+    }
+}
+
+impl TexelFormat {
+    /// Codes of a row of `width` texels.
+    pub fn row_codes(&self, width: usize) -> usize {
+        width * self.channels
+    }
+
+    /// Bytes of a texel.
+    pub fn bytes(&self) -> usize {
+        self.channels * self.depth.bytes()
+    }
+
     /// Fails if the encoding and the depth do not go together.
-    pub(crate) fn check(&self) -> Result<()> {
+    pub fn check(&self) -> Result<()> {
         if (self.encoding == Encoding::Float) == self.depth.is_float() {
             return Ok(());
         }
@@ -171,8 +251,8 @@ impl NormalFormat {
     }
 
     /// Fails if `count` codes of `depth` are not a map of this size and format.
-    pub(crate) fn check_codes(&self, size: Size, count: usize, depth: Depth) -> Result<()> {
-        let wanted = size.texels() * self.channels.count();
+    pub fn check_codes(&self, size: Size, count: usize, depth: Depth) -> Result<()> {
+        let wanted = size.texels() * self.channels;
         if count == wanted && depth == self.depth {
             return Ok(());
         }

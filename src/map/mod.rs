@@ -1,13 +1,14 @@
 //! Maps with what their numbers mean attached.
 
+mod code_map;
 mod codes;
 mod format;
 mod grid;
 mod height;
-mod normal;
 
+pub use code_map::{CodeMap, NormalMap, ParallaxMap};
 pub use codes::{Codes, CodesMut, CodesRef};
-pub use format::{Channels, Convention, Depth, Edge, Edges, Encoding, NormalFormat};
+pub(crate) use format::TexelFormat;
+pub use format::{Channels, Convention, Depth, Edge, Edges, Encoding, MapFormat, NormalFormat, ParallaxFormat};
 pub use grid::{Grid, Size};
 pub use height::{HeightMap, HeightType, Heights, HeightsMut};
-pub use normal::NormalMap;

@@ -1,3 +1,14 @@
 //! The operations: their options, their kernels' parameters and their CPU reference, one stem for each.
+//!
+//! `bake` looks at a height and its neighbours; `blend` and `parallax` look at the texels of several maps that lie
+//! over each other.
 
-pub mod normal;
+pub mod bake;
+pub mod blend;
+mod layer;
+pub mod parallax;
+mod precision;
+mod store;
+
+pub(crate) use layer::{GREATEST_COMPONENT, LayerReading, Vector};
+pub use precision::Precision;

@@ -13,8 +13,6 @@ pub(super) struct Recycling<T> {
 pub(super) struct Filling<T> {
     full: SyncSender<T>,
     empty: Receiver<T>,
-    /// Buffers that were taken and not filled.
-    spare: Vec<T>,
     /// Buffers that may still be made.
     unmade: usize,
     abandoned: bool,
@@ -24,8 +22,7 @@ pub(super) struct Filling<T> {
 pub(super) fn recycling<T>(buffers: usize) -> (Recycling<T>, Filling<T>) {
     let (full_sender, full) = sync_channel(buffers);
     let (empty, empty_receiver) = channel();
-    let filling =
-        Filling { full: full_sender, empty: empty_receiver, spare: Vec::new(), unmade: buffers, abandoned: false };
+    let filling = Filling { full: full_sender, empty: empty_receiver, unmade: buffers, abandoned: false };
     (Recycling { full, empty }, filling)
 }
 
@@ -48,19 +45,11 @@ impl<T> Filling<T> {
         if self.abandoned {
             return None;
         }
-        if let Some(buffer) = self.spare.pop() {
-            return Some(Some(buffer));
-        }
         if self.unmade > 0 {
             self.unmade -= 1;
             return Some(None);
         }
         self.empty.recv().ok().map(Some)
-    }
-
-    /// Puts a buffer back that could not be filled.
-    pub fn put_back(&mut self, buffer: T) {
-        self.spare.push(buffer);
     }
 
     /// Hands a full buffer over.

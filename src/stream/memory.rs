@@ -37,21 +37,27 @@ impl HeightBands for MapBands<'_> {
 pub(crate) struct MapSink<'a> {
     codes: CodesMut<'a>,
     row_codes: usize,
-    next_row: usize,
+    filled_codes: usize,
+    /// Codes for which there is room now.
+    room_codes: usize,
 }
 
 impl<'a> MapSink<'a> {
     /// Fills `codes`, of which each row has `row_codes`.
     pub fn new(codes: CodesMut<'a>, row_codes: usize) -> Self {
-        Self { codes, row_codes, next_row: 0 }
+        Self { codes, row_codes, filled_codes: 0, room_codes: 0 }
     }
 }
 
 impl CodeSink for MapSink<'_> {
-    fn write(&mut self, rows: usize, fill: &mut dyn FnMut(&mut CodesMut<'_>) -> Result<()>) -> Result<()> {
-        let first = self.next_row * self.row_codes;
-        fill(&mut self.codes.slice(first..first + rows * self.row_codes))?;
-        self.next_row += rows;
+    fn room(&mut self, rows: usize) -> Result<CodesMut<'_>> {
+        let first = self.filled_codes;
+        self.room_codes = rows * self.row_codes;
+        Ok(self.codes.slice(first..first + self.room_codes))
+    }
+
+    fn filled(&mut self) -> Result<()> {
+        self.filled_codes += std::mem::take(&mut self.room_codes);
         Ok(())
     }
 }

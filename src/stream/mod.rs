@@ -1,12 +1,15 @@
-//! The two ends of a bake from rows to rows: [`RowSource`] and [`RowSink`], and the [`Monitor`] that watches it.
+//! The two ends of a bake from rows to rows: [`RowSource`] or [`NormalSource`] and [`RowSink`], and the [`Monitor`]
+//! that watches it.
 //!
 //! Between them rows are cut into bands with a halo of one row and go through a backend. Reading, baking and writing
 //! overlap, and no stage holds more than a few bands.
 
 mod band;
 mod channel;
+mod layers;
 mod memory;
 mod monitor;
+mod normals;
 mod order;
 mod reader;
 #[cfg(test)]
@@ -15,8 +18,11 @@ mod thread;
 mod writer;
 
 pub(crate) use band::{Band, HeightBand, HeightBands};
+pub(crate) use layers::{LayerBand, LayerBands, LayerReader, LayerSource, MapLayers};
 pub(crate) use memory::{MapBands, MapSink};
 pub use monitor::Monitor;
+pub(crate) use normals::{HeightLayer, MaskLayer, NormalLayer, Tiled, check_components, height_codes, mask_codes};
+pub use normals::{NormalSource, read_normals};
 pub(crate) use order::RowOrder;
 pub(crate) use reader::{BandReader, read_map_watched};
 pub use reader::{RowSource, read_map};

@@ -4,16 +4,22 @@ use super::channel::{Filling, recycling};
 use super::order::RowOrder;
 use super::thread;
 use crate::error::{Error, Result};
-use crate::map::{Codes, CodesMut, CodesRef, Depth, NormalFormat, Size};
+use crate::map::{Codes, CodesMut, CodesRef, Depth, Size, TexelFormat};
 use std::thread::{Builder, JoinHandle};
 
-/// Takes the codes of a map from a backend, from the top.
+/// Takes the codes of a map from a backend, from the top: room first, then the word that it is filled.
 pub(crate) trait CodeSink {
-    /// Lets `fill` write the codes of the next `rows` rows.
+    /// Room for the codes of the next `rows` rows.
     ///
     /// # Errors
-    /// What `fill` returns, or what an earlier row met on its way out.
-    fn write(&mut self, rows: usize, fill: &mut dyn FnMut(&mut CodesMut<'_>) -> Result<()>) -> Result<()>;
+    /// What an earlier row met on its way out.
+    fn room(&mut self, rows: usize) -> Result<CodesMut<'_>>;
+
+    /// Hands on the rows for which there was room.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    fn filled(&mut self) -> Result<()>;
 }
 
 /// A map that is written row by row.
@@ -46,6 +52,8 @@ pub(crate) struct CodeWriter {
     depth: Depth,
     row_codes: usize,
     filling: Option<Filling<Codes>>,
+    /// The rows that are being filled.
+    current: Option<Codes>,
     thread: Option<JoinHandle<Result<Box<dyn RowSink>>>>,
 }
 
@@ -54,8 +62,8 @@ impl CodeWriter {
     ///
     /// # Errors
     /// [`Error::Threads`].
-    pub fn new(mut sink: Box<dyn RowSink>, size: Size, format: NormalFormat, order: RowOrder) -> Result<Self> {
-        let row_codes = size.width() * format.channels.count();
+    pub fn new(mut sink: Box<dyn RowSink>, size: Size, format: TexelFormat, order: RowOrder) -> Result<Self> {
+        let row_codes = format.row_codes(size.width());
         let (full, filling) = recycling::<Codes>(BUFFERS);
         let write_all = move || {
             let mut travelled = 0;
@@ -67,7 +75,7 @@ impl CodeWriter {
             Ok(sink)
         };
         let thread = Some(thread::start(Builder::new().name("texbake write".into()), write_all)?);
-        Ok(Self { depth: format.depth, row_codes, filling: Some(filling), thread })
+        Ok(Self { depth: format.depth, row_codes, filling: Some(filling), current: None, thread })
     }
 
     /// Waits for the last rows and completes the file.
@@ -96,20 +104,23 @@ impl Drop for CodeWriter {
 }
 
 impl CodeSink for CodeWriter {
-    fn write(&mut self, rows: usize, fill: &mut dyn FnMut(&mut CodesMut<'_>) -> Result<()>) -> Result<()> {
+    fn room(&mut self, rows: usize) -> Result<CodesMut<'_>> {
         let count = rows * self.row_codes;
         let Some(filling) = &mut self.filling else { return Err(Error::Cancelled) };
-        let Some(buffer) = filling.take() else {
+        // Room that was not filled is still there.
+        let Some(buffer) = self.current.take().map(Some).or_else(|| filling.take()) else {
             // The writing thread has ended early: its error is the reason.
-            return self.join().and(Err(Error::Cancelled));
+            return Err(self.join().err().unwrap_or(Error::Cancelled));
         };
-        let mut codes =
-            buffer.filter(|codes| codes.as_ref().len() == count).unwrap_or_else(|| Codes::zeroed(self.depth, count));
-        let filled = fill(&mut codes.as_mut());
-        match filled {
-            Ok(()) => filling.send(codes),
-            Err(_) => filling.put_back(codes),
-        }
-        filled
+        let codes = buffer.filter(|codes| codes.as_ref().len() == count);
+        Ok(self.current.insert(codes.unwrap_or_else(|| Codes::zeroed(self.depth, count))).as_mut())
+    }
+
+    fn filled(&mut self) -> Result<()> {
+        let (Some(filling), Some(codes)) = (&mut self.filling, self.current.take()) else {
+            return Err(Error::Cancelled);
+        };
+        filling.send(codes);
+        Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! Part of a row in planar arrays, and the three passes over it.
 
 use super::rule::Rule;
-use crate::ops::normal::{Stencil, float_sums, integer_sums};
+use crate::ops::bake::{Stencil, float_sums, integer_sums};
 use std::ops::Range;
 
 /// Texels of a block: its arrays stay in the first cache.

@@ -17,11 +17,13 @@ mod tests;
 
 pub(crate) use reference::Reference;
 
-use crate::backend::Backend;
+use crate::backend::{Backend, RowBytes, fill_rows};
 use crate::error::{Error, Result};
-use crate::map::CodesMut;
-use crate::ops::normal::NormalPlan;
-use crate::stream::{CodeSink, HeightBand, HeightBands};
+use crate::map::{CodesMut, CodesRef};
+use crate::ops::bake::BakePlan;
+use crate::ops::blend::{self, BlendPlan};
+use crate::ops::parallax::{self, ParallaxPlan};
+use crate::stream::{CodeSink, HeightBands, LayerBand, LayerBands};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
@@ -63,20 +65,49 @@ impl Cpu {
         self.own_threads.as_ref().map_or_else(rayon::current_num_threads, ThreadPool::current_num_threads)
     }
 
-    fn bake(&self, plan: &NormalPlan, band: &HeightBand<'_>, codes: &mut CodesMut<'_>) {
-        let rows = (STRIP_TEXELS / plan.size.width()).max(1);
-        let strips = codes.chunks(rows * plan.row_codes());
-        let bake = || {
-            strips.into_par_iter().enumerate().for_each(|(strip, codes)| {
+    /// Cuts the rows of a band into strips of `rows` rows, one for a thread at a time.
+    fn in_strips<'m>(
+        &self,
+        rows: usize,
+        band_rows: usize,
+        maps: &'m mut [CodesMut<'_>],
+        fill: impl Fn(usize, usize, &mut [CodesMut<'m>]) + Sync,
+    ) {
+        let mut strips: Vec<Vec<CodesMut<'m>>> = Vec::new();
+        for map in maps {
+            let row_codes = map.len() / band_rows;
+            for (strip, codes) in map.chunks(rows * row_codes).into_iter().enumerate() {
+                match strips.get_mut(strip) {
+                    Some(strip) => strip.push(codes),
+                    None => strips.push(vec![codes]),
+                }
+            }
+        }
+        let run = || {
+            strips.into_par_iter().enumerate().for_each(|(strip, mut maps)| {
                 let first = strip * rows;
-                strip::bake(plan, &band.part(first, rows.min(band.rows() - first)), codes);
+                fill(first, rows.min(band_rows - first), &mut maps);
             });
         };
         match &self.own_threads {
-            Some(threads) => threads.install(bake),
-            None => bake(),
+            Some(threads) => threads.install(run),
+            None => run(),
         }
     }
+}
+
+/// Whole rows of about [`STRIP_TEXELS`] texels.
+fn strip_rows(width: usize) -> usize {
+    (STRIP_TEXELS / width).max(1)
+}
+
+/// The rows `first..first + rows` of each layer.
+fn part<'a>(band: &LayerBand<'a>, first: usize, rows: usize) -> Vec<CodesRef<'a>> {
+    let slice = |layer: &CodesRef<'a>| {
+        let row_codes = layer.len() / band.rows;
+        layer.slice(first * row_codes..(first + rows) * row_codes)
+    };
+    band.layers.iter().map(slice).collect()
 }
 
 impl Backend for Cpu {
@@ -90,21 +121,42 @@ impl Backend for Cpu {
         format!("{threads} thread{plural}, {}", vectorised::instruction_set())
     }
 
-    fn band_rows(&self, plan: &NormalPlan) -> usize {
-        let codes = plan.row_codes() * plan.format.depth.bytes();
-        let row_bytes = plan.size.width() * plan.height_type.bytes() + codes;
-        (BAND_BYTES / row_bytes).max(4 * self.threads()).min(plan.size.height())
+    fn band_rows(&self, row: RowBytes) -> usize {
+        (BAND_BYTES / (row.read + row.written)).max(4 * self.threads())
     }
 
-    fn map_band_rows(&self, plan: &NormalPlan) -> usize {
-        plan.size.height()
+    fn map_band_rows(&self, _: RowBytes) -> usize {
+        usize::MAX
     }
 
-    fn normal(&self, plan: &NormalPlan, bands: &mut dyn HeightBands, sink: &mut dyn CodeSink) -> Result<()> {
+    fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
         while let Some(band) = bands.next()? {
-            sink.write(band.rows(), &mut |codes| {
-                self.bake(plan, &band, codes);
-                Ok(())
+            fill_rows(sinks, band.rows(), |maps| {
+                self.in_strips(strip_rows(plan.size.width()), band.rows(), maps, |first, rows, maps| {
+                    strip::bake(plan, &band.part(first, rows), maps);
+                });
+            })?;
+        }
+        Ok(())
+    }
+
+    fn blend(&self, plan: &BlendPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {
+        while let Some(band) = bands.next()? {
+            fill_rows(&mut [&mut *sink], band.rows, |maps| {
+                self.in_strips(strip_rows(plan.size.width()), band.rows, maps, |first, rows, maps| {
+                    blend::codes_of_layers(plan, &part(&band, first, rows), &mut maps[0]);
+                });
+            })?;
+        }
+        Ok(())
+    }
+
+    fn parallax(&self, plan: &ParallaxPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {
+        while let Some(band) = bands.next()? {
+            fill_rows(&mut [&mut *sink], band.rows, |maps| {
+                self.in_strips(strip_rows(plan.size.width()), band.rows, maps, |first, rows, maps| {
+                    parallax::codes_of_layers(plan, &part(&band, first, rows), &mut maps[0]);
+                });
             })?;
         }
         Ok(())

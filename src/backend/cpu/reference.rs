@@ -1,9 +1,11 @@
 //! The specification as a backend: one thread, one texel after the other.
 
-use crate::backend::Backend;
+use crate::backend::{Backend, RowBytes, fill_rows};
 use crate::error::Result;
-use crate::ops::normal::{NormalPlan, codes_of_band};
-use crate::stream::{CodeSink, HeightBands};
+use crate::ops::bake::{self, BakePlan};
+use crate::ops::blend::{self, BlendPlan};
+use crate::ops::parallax::{self, ParallaxPlan};
+use crate::stream::{CodeSink, HeightBands, LayerBands};
 
 /// Plain scalar code. Slow, and right by reading.
 #[derive(Debug, Clone, Copy, Default)]
@@ -18,15 +20,28 @@ impl Backend for Reference {
         "reference, 1 thread".into()
     }
 
-    fn band_rows(&self, _: &NormalPlan) -> usize {
+    fn band_rows(&self, _: RowBytes) -> usize {
         64
     }
 
-    fn normal(&self, plan: &NormalPlan, bands: &mut dyn HeightBands, sink: &mut dyn CodeSink) -> Result<()> {
+    fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
         while let Some(band) = bands.next()? {
-            sink.write(band.rows(), &mut |codes| {
-                codes_of_band(plan, &band, codes);
-                Ok(())
+            fill_rows(sinks, band.rows(), |maps| bake::codes_of_band(plan, &band, maps))?;
+        }
+        Ok(())
+    }
+
+    fn blend(&self, plan: &BlendPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {
+        while let Some(band) = bands.next()? {
+            fill_rows(&mut [&mut *sink], band.rows, |maps| blend::codes_of_layers(plan, &band.layers, &mut maps[0]))?;
+        }
+        Ok(())
+    }
+
+    fn parallax(&self, plan: &ParallaxPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {
+        while let Some(band) = bands.next()? {
+            fill_rows(&mut [&mut *sink], band.rows, |maps| {
+                parallax::codes_of_layers(plan, &band.layers, &mut maps[0])
             })?;
         }
         Ok(())

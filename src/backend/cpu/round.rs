@@ -2,7 +2,7 @@
 
 use super::f16_bits::nearest_f16_of_f32;
 use crate::exact::{CodeRounding, nearest_f16, nearest_f32};
-use crate::map::NormalFormat;
+use crate::map::TexelFormat;
 use half::f16;
 use std::marker::PhantomData;
 
@@ -36,8 +36,8 @@ pub(super) struct ToF16;
 pub(super) struct ToF32;
 
 impl<C> ToInteger<C> {
-    pub fn new(format: NormalFormat) -> Self {
-        let rounding = CodeRounding::new(format.encoding, format.depth).expect("checked with the options");
+    pub fn new(format: TexelFormat) -> Self {
+        let rounding = CodeRounding::new(format).expect("checked with the options");
         Self { rounding, code: PhantomData }
     }
 }
@@ -60,7 +60,7 @@ macro_rules! round_to {
         impl Round for ToInteger<$code> {
             type Code = $code;
 
-            /// `code_of_float` of the reference; its conversion, which saturates, would cost more.
+            /// `CodeRounding::code_of_float`; its conversion, which saturates, would cost more.
             #[inline(always)]
             fn code(&self, component: f32) -> $code {
                 let CodeRounding { m, c, offset, .. } = self.rounding;
@@ -169,7 +169,7 @@ mod tests {
     use crate::map::{Depth, Encoding};
 
     fn to_integer<C>(encoding: Encoding, depth: Depth) -> ToInteger<C> {
-        ToInteger::new(NormalFormat { encoding, depth, ..NormalFormat::default() })
+        ToInteger::new(TexelFormat { encoding, depth, channels: 3 })
     }
 
     #[test]

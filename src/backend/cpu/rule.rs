@@ -1,7 +1,7 @@
 //! From the sums of a texel to its codes: in written floats, in fast floats, or proved.
 
 use super::round::{Prove, Round};
-use crate::ops::normal::{FloatSlope, IntegerSlope};
+use crate::ops::bake::{FloatSlope, IntegerSlope};
 
 /// From the stencil sums of a texel to its codes.
 pub(super) trait Rule: Sync {

@@ -3,72 +3,118 @@
 use super::block::{BLOCK, Block, Height, sums_inside};
 use super::round::{ToF16, ToF32, ToInteger};
 use super::rule::{Estimate, Estimated, Proved, Rule, Written};
-use crate::map::CodesMut;
-use crate::ops::normal::{FloatSlope, IntegerSlope, NormalPlan, Precision, Slope};
+use crate::map::{CodesMut, TexelFormat};
+use crate::ops::Precision;
+use crate::ops::bake::{BakePlan, FloatSlope, IntegerSlope, Slope, codes_of_band};
 use crate::stream::{Band, HeightBand};
 
-/// The codes of all texels of a strip.
-pub(super) fn bake(plan: &NormalPlan, strip: &HeightBand<'_>, codes: CodesMut<'_>) {
+/// The codes of all texels of a strip, for each map of the plan.
+pub(super) fn bake(plan: &BakePlan, strip: &HeightBand<'_>, maps: &mut [CodesMut<'_>]) {
+    let (Some(format), None) = (plan.normal, plan.parallax) else {
+        return codes_of_band(plan, strip, maps);
+    };
+    let all = 0..maps[0].len();
+    let codes = maps[0].slice(all);
     match (strip, plan.slope) {
-        (HeightBand::U8(strip), Slope::Integer(slope)) => bake_integers(plan, slope, strip, codes),
-        (HeightBand::U16(strip), Slope::Integer(slope)) => bake_integers(plan, slope, strip, codes),
-        (HeightBand::F32(strip), Slope::Float(slope)) => bake_floats(plan, slope, strip, codes),
+        (HeightBand::U8(strip), Slope::Integer(slope)) => bake_integers(plan, format.texel(), slope, strip, codes),
+        (HeightBand::U16(strip), Slope::Integer(slope)) => bake_integers(plan, format.texel(), slope, strip, codes),
+        (HeightBand::F32(strip), Slope::Float(slope)) => bake_floats(plan, format.texel(), slope, strip, codes),
         _ => unreachable!("the plan was made for heights of another type"),
     }
 }
 
 fn bake_integers<T: Height<Sum = i32>>(
-    plan: &NormalPlan,
+    plan: &BakePlan,
+    format: TexelFormat,
     slope: IntegerSlope,
     strip: &Band<'_, T>,
     codes: CodesMut<'_>,
 ) {
-    let format = plan.format;
     match plan.precision {
         Precision::Exact => {
             let (near, nearer) = (Estimate::<f32>::from(slope), Estimate::<f64>::from(slope));
             match codes {
                 CodesMut::U8(codes) => {
-                    fill(plan, &Proved { slope, estimate: near, round: ToInteger::<u8>::new(format) }, strip, codes);
+                    fill(
+                        plan,
+                        format.channels,
+                        &Proved { slope, estimate: near, round: ToInteger::<u8>::new(format) },
+                        strip,
+                        codes,
+                    );
                 }
                 CodesMut::U16(codes) => {
-                    fill(plan, &Proved { slope, estimate: nearer, round: ToInteger::<u16>::new(format) }, strip, codes);
+                    fill(
+                        plan,
+                        format.channels,
+                        &Proved { slope, estimate: nearer, round: ToInteger::<u16>::new(format) },
+                        strip,
+                        codes,
+                    );
                 }
-                CodesMut::F16(codes) => fill(plan, &Proved { slope, estimate: nearer, round: ToF16 }, strip, codes),
-                CodesMut::F32(codes) => fill(plan, &Proved { slope, estimate: nearer, round: ToF32 }, strip, codes),
+                CodesMut::F16(codes) => {
+                    fill(plan, format.channels, &Proved { slope, estimate: nearer, round: ToF16 }, strip, codes)
+                }
+                CodesMut::F32(codes) => {
+                    fill(plan, format.channels, &Proved { slope, estimate: nearer, round: ToF32 }, strip, codes)
+                }
             }
         }
         Precision::Fast => {
             let estimate = Estimate::from(slope);
             match codes {
                 CodesMut::U8(codes) => {
-                    fill(plan, &Estimated { estimate, round: ToInteger::<u8>::new(format) }, strip, codes);
+                    fill(
+                        plan,
+                        format.channels,
+                        &Estimated { estimate, round: ToInteger::<u8>::new(format) },
+                        strip,
+                        codes,
+                    );
                 }
                 CodesMut::U16(codes) => {
-                    fill(plan, &Estimated { estimate, round: ToInteger::<u16>::new(format) }, strip, codes);
+                    fill(
+                        plan,
+                        format.channels,
+                        &Estimated { estimate, round: ToInteger::<u16>::new(format) },
+                        strip,
+                        codes,
+                    );
                 }
-                CodesMut::F16(codes) => fill(plan, &Estimated { estimate, round: ToF16 }, strip, codes),
-                CodesMut::F32(codes) => fill(plan, &Estimated { estimate, round: ToF32 }, strip, codes),
+                CodesMut::F16(codes) => {
+                    fill(plan, format.channels, &Estimated { estimate, round: ToF16 }, strip, codes)
+                }
+                CodesMut::F32(codes) => {
+                    fill(plan, format.channels, &Estimated { estimate, round: ToF32 }, strip, codes)
+                }
             }
         }
     }
 }
 
-fn bake_floats(plan: &NormalPlan, slope: FloatSlope, strip: &Band<'_, f32>, codes: CodesMut<'_>) {
-    let format = plan.format;
+fn bake_floats(plan: &BakePlan, format: TexelFormat, slope: FloatSlope, strip: &Band<'_, f32>, codes: CodesMut<'_>) {
     match codes {
-        CodesMut::U8(codes) => fill(plan, &Written { slope, round: ToInteger::<u8>::new(format) }, strip, codes),
-        CodesMut::U16(codes) => fill(plan, &Written { slope, round: ToInteger::<u16>::new(format) }, strip, codes),
-        CodesMut::F16(codes) => fill(plan, &Written { slope, round: ToF16 }, strip, codes),
-        CodesMut::F32(codes) => fill(plan, &Written { slope, round: ToF32 }, strip, codes),
+        CodesMut::U8(codes) => {
+            fill(plan, format.channels, &Written { slope, round: ToInteger::<u8>::new(format) }, strip, codes)
+        }
+        CodesMut::U16(codes) => {
+            fill(plan, format.channels, &Written { slope, round: ToInteger::<u16>::new(format) }, strip, codes)
+        }
+        CodesMut::F16(codes) => fill(plan, format.channels, &Written { slope, round: ToF16 }, strip, codes),
+        CodesMut::F32(codes) => fill(plan, format.channels, &Written { slope, round: ToF32 }, strip, codes),
     }
 }
 
 /// Row by row, block by block.
-fn fill<T: Height, R: Rule<Sum = T::Sum>>(plan: &NormalPlan, rule: &R, strip: &Band<'_, T>, codes: &mut [R::Code]) {
-    let channels = plan.format.channels.count();
+fn fill<T: Height, R: Rule<Sum = T::Sum>>(
+    plan: &BakePlan,
+    channels: usize,
+    rule: &R,
+    strip: &Band<'_, T>,
+    codes: &mut [R::Code],
+) {
     let mut block = Block::new();
-    for (row, codes) in codes.chunks_mut(plan.row_codes()).enumerate() {
+    for (row, codes) in codes.chunks_mut(plan.size.width() * channels).enumerate() {
         for (first, texels) in (0..).step_by(BLOCK).zip(codes.chunks_mut(BLOCK * channels)) {
             let count = texels.len() / channels;
             sums_of_block(plan, strip, row, first, &mut block.sums, count);
@@ -80,7 +126,7 @@ fn fill<T: Height, R: Rule<Sum = T::Sum>>(plan: &NormalPlan, rule: &R, strip: &B
 
 /// The sums of the columns `first..first + count` of a row.
 fn sums_of_block<T: Height>(
-    plan: &NormalPlan,
+    plan: &BakePlan,
     strip: &Band<'_, T>,
     row: usize,
     first: usize,

@@ -1,11 +1,12 @@
 //! The vectorised backend against the reference: the same bytes, whatever the options, the size and the threads.
 
 use super::{Cpu, Reference};
-use crate::backend::Backend;
+use crate::backend::{Backend, RowBytes};
 use crate::map::{
     Channels, Codes, CodesRef, Convention, Depth, Edge, Edges, Encoding, Grid, HeightMap, NormalFormat, Size,
 };
-use crate::ops::normal::{Filter, NormalOptions, NormalPlan, Precision};
+use crate::ops::Precision;
+use crate::ops::bake::{BakeOptions, BakePlan, Filter, NormalOptions};
 use crate::stream::{MapBands, MapSink};
 use crate::{Rational, Scale};
 
@@ -58,12 +59,13 @@ fn formats() -> Vec<NormalFormat> {
 }
 
 fn baked(backend: &dyn Backend, map: &HeightMap, options: &NormalOptions, band_rows: usize) -> Codes {
-    let plan = NormalPlan::new(options, map.size(), map.height_type()).unwrap();
+    let plan = BakePlan::new(&(*options).into(), map.size(), map.height_type()).unwrap();
+    let format = options.format.texel();
     // Poisoned, so that a texel that nobody writes cannot pass.
-    let mut codes = Codes::zeroed(plan.format.depth, plan.size.height() * plan.row_codes());
+    let mut codes = Codes::zeroed(format.depth, plan.size.texels() * format.channels);
     codes.as_mut().bytes_mut().fill(0xa5);
-    let mut sink = MapSink::new(codes.as_mut(), plan.row_codes());
-    backend.normal(&plan, &mut MapBands::new(map, plan.edges.y, band_rows), &mut sink).unwrap();
+    let mut sink = MapSink::new(codes.as_mut(), format.row_codes(plan.size.width()));
+    backend.bake(&plan, &mut MapBands::new(map, plan.edges.y, band_rows), &mut [&mut sink]).unwrap();
     codes
 }
 
@@ -286,10 +288,10 @@ fn the_device_says_what_runs() {
 fn bands_hold_some_rows_for_every_thread() {
     let rows = |width, height| {
         let plan =
-            NormalPlan::new(&NormalOptions::default(), Size::new(width, height).unwrap(), crate::map::HeightType::U16);
-        Cpu::with_threads(3).unwrap().band_rows(&plan.unwrap())
+            BakePlan::new(&BakeOptions::default(), Size::new(width, height).unwrap(), crate::map::HeightType::U16);
+        Cpu::with_threads(3).unwrap().band_rows(RowBytes::of_bake(&plan.unwrap()))
     };
     assert_eq!(rows(4096, 4096), 51); // 1 MiB over 4096 (2 + 3) bytes
     assert_eq!(rows(1 << 24, 4096), 12);
-    assert_eq!(rows(64, 64), 64);
+    assert_eq!(rows(64, 64), 3276);
 }

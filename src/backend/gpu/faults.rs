@@ -6,8 +6,8 @@ use super::transfer::Transfer;
 use super::{Gpu, adapters};
 use crate::backend::Backend;
 use crate::error::Result;
-use crate::map::{Edge, Grid, HeightMap, HeightType, NormalMap, Size};
-use crate::ops::normal::{NormalOptions, NormalPlan};
+use crate::map::{Edge, Grid, HeightMap, HeightType, NormalFormat, NormalMap, Size};
+use crate::ops::bake::{BakeOptions, BakePlan};
 use crate::stream::{HeightBand, HeightBands, MapBands, MapSink};
 
 /// Lavapipe; `None` where it is not installed.
@@ -24,8 +24,8 @@ fn map() -> HeightMap {
     Grid::from_fn(50, 40, |x, y| (x * y % 251) as u8).unwrap().into()
 }
 
-fn plan(map: &HeightMap) -> NormalPlan {
-    NormalPlan::new(&NormalOptions::default(), map.size(), map.height_type()).unwrap()
+fn plan(map: &HeightMap) -> BakePlan {
+    BakePlan::new(&BakeOptions::default(), map.size(), map.height_type()).unwrap()
 }
 
 /// Bakes in bands of eight rows; before each band `before` is told which one it is.
@@ -44,9 +44,9 @@ fn bake(device: &Device, before: impl FnMut(usize)) -> Result<NormalMap> {
     }
     let map = map();
     let plan = plan(&map);
-    let mut normal = NormalMap::zeroed(plan.size, plan.format);
+    let mut normal = NormalMap::zeroed(plan.size, NormalFormat::default());
     let mut bands = Told { bands: MapBands::new(&map, Edge::Wrap, 8), count: 0, before };
-    Transfer::new(device, &plan)?.run(&mut bands, &mut MapSink::new(normal.codes_mut(), plan.row_codes()))?;
+    Transfer::new(device, &plan)?.run(&mut bands, &mut MapSink::new(normal.codes_mut(), 3 * plan.size.width()))?;
     Ok(normal)
 }
 
@@ -87,15 +87,15 @@ fn rows_too_wide_for_the_device_are_refused() {
     let Some(device) = lavapipe() else { return };
     let gpu = Gpu { device };
     let size = Size::new(65_536 * 256, 1).unwrap();
-    let plan = NormalPlan::new(&NormalOptions::default(), size, HeightType::U8).unwrap();
+    let plan = BakePlan::new(&BakeOptions::default(), size, HeightType::U8).unwrap();
     struct NoBands;
     impl HeightBands for NoBands {
         fn next(&mut self) -> Result<Option<HeightBand<'_>>> {
             panic!("no band of a refused map is asked for")
         }
     }
-    let mut codes = NormalMap::zeroed(Size::new(1, 1).unwrap(), plan.format);
-    let error = gpu.normal(&plan, &mut NoBands, &mut MapSink::new(codes.codes_mut(), 3)).unwrap_err().to_string();
+    let mut codes = NormalMap::zeroed(Size::new(1, 1).unwrap(), NormalFormat::default());
+    let error = gpu.bake(&plan, &mut NoBands, &mut [&mut MapSink::new(codes.codes_mut(), 3)]).unwrap_err().to_string();
     assert!(error.ends_with("rows of 16777216 texels are too wide for it"), "{error}");
 }
 

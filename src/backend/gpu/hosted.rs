@@ -6,7 +6,7 @@ use super::transfer::dispatch;
 use super::{GREATEST_DISPATCH, Gpu, adapters, self_test};
 use crate::error::{Error, Result};
 use crate::map::{Channels, Depth, Encoding, HeightType, NormalFormat, Size};
-use crate::ops::normal::{NormalOptions, NormalPlan};
+use crate::ops::bake::{BakePlan, NormalOptions};
 use std::num::NonZero;
 use wgpu::{
     BindingResource, Buffer, BufferBinding, BufferDescriptor, BufferSlice, BufferUsages, CommandEncoder, Extent3d,
@@ -61,7 +61,7 @@ pub enum CodeTarget<'a> {
 /// A bake on a hosted device, ready to be recorded any number of times.
 pub struct NormalBake<'a> {
     device: &'a Device,
-    plan: NormalPlan,
+    plan: BakePlan,
 }
 
 /// Rows of a texture copy begin at multiples of this.
@@ -89,7 +89,7 @@ impl Hosted {
     /// in one binding.
     pub fn normal(&self, size: Size, height_type: HeightType, options: &NormalOptions) -> Result<NormalBake<'_>> {
         let device = &self.gpu.device;
-        let bake = NormalBake { device, plan: NormalPlan::new(options, size, height_type)? };
+        let bake = NormalBake { device, plan: BakePlan::new(&(*options).into(), size, height_type)? };
         let rows =
             [bake.heights_row_bytes(), bake.codes_row_bytes()].map(|bytes| bytes.next_multiple_of(COPY_ROW_BYTES));
         let greatest = device.greatest_binding();
@@ -99,9 +99,9 @@ impl Hosted {
             return Err(device.error(reason));
         }
         self.gpu.accept(&bake.plan)?;
-        let channels = bake.plan.format.channels.count();
+        let channels = normal::format(&bake.plan).channels.count();
         device.guarded(|| {
-            for codes_per_texel in [channels, texture_channels(bake.plan.format)] {
+            for codes_per_texel in [channels, texture_channels(normal::format(&bake.plan))] {
                 device.pipeline(&NormalKernel::new(&bake.plan, codes_per_texel, false));
             }
             Ok(())
@@ -118,7 +118,7 @@ impl NormalBake<'_> {
 
     /// Bytes from one row of codes to the next in a buffer: four texels make whole words.
     pub fn codes_row_bytes(&self) -> usize {
-        self.kernel(self.plan.format.channels.count()).codes_row_bytes(self.plan.size.width())
+        self.kernel(normal::format(&self.plan).channels.count()).codes_row_bytes(self.plan.size.width())
     }
 
     /// Records the bake. The map is complete when the encoder's commands have run.
@@ -132,11 +132,11 @@ impl NormalBake<'_> {
             let heights = self.heights_on_device(encoder, heights);
             match codes {
                 CodeTarget::Buffer(slice) => {
-                    let kernel = self.kernel(self.plan.format.channels.count());
+                    let kernel = self.kernel(normal::format(&self.plan).channels.count());
                     self.dispatch(encoder, &kernel, &heights, &Rows::of(slice, self.codes_row_bytes()));
                 }
                 CodeTarget::Texture(texture) => {
-                    let kernel = self.kernel(texture_channels(self.plan.format));
+                    let kernel = self.kernel(texture_channels(normal::format(&self.plan)));
                     let codes = self.scratch("codes", kernel.codes_row_bytes(self.plan.size.width()));
                     self.dispatch(encoder, &kernel, &heights, &codes);
                     encoder.copy_buffer_to_texture(codes.layout(), texture.as_image_copy(), extent(self.plan.size));
@@ -163,7 +163,7 @@ impl NormalBake<'_> {
             }
             CodeTarget::Texture(texture) => {
                 check_size("codes texture", texture, plan.size)?;
-                check_format("codes texture", texture, codes_formats(plan.format), TextureUsages::COPY_DST)
+                check_format("codes texture", texture, codes_formats(normal::format(&plan)), TextureUsages::COPY_DST)
             }
         }
     }

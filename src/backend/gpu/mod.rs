@@ -13,10 +13,12 @@ mod self_test;
 mod slot;
 mod transfer;
 
-use crate::backend::Backend;
+use crate::backend::{Backend, RowBytes};
 use crate::error::{Error, Result};
-use crate::ops::normal::NormalPlan;
-use crate::stream::{CodeSink, HeightBands};
+use crate::ops::bake::BakePlan;
+use crate::ops::blend::BlendPlan;
+use crate::ops::parallax::ParallaxPlan;
+use crate::stream::{CodeSink, HeightBands, LayerBands};
 use device::Device;
 pub use hosted::{CodeTarget, HeightSource, Hosted, NormalBake};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -73,11 +75,11 @@ impl Gpu {
     }
 
     /// Refuses rows that this device cannot take, and a kernel that computes wrong bytes; each kernel is tested once.
-    fn accept(&self, plan: &NormalPlan) -> Result<()> {
+    fn accept(&self, plan: &BakePlan) -> Result<()> {
         let width = plan.size.width();
         // A band has at least one row and its halo; a texel has at most four codes.
         let heights = 3 * normal::heights_row_bytes(width, plan.height_type);
-        let codes = 4 * plan.format.depth.bytes() * width.next_multiple_of(normal::TEXELS_PER_INVOCATION);
+        let codes = 4 * normal::format(plan).depth.bytes() * width.next_multiple_of(normal::TEXELS_PER_INVOCATION);
         let groups = width.div_ceil(normal::TEXELS_PER_INVOCATION * normal::WORKGROUP);
         if heights.max(codes) > self.device.greatest_binding() || groups > GREATEST_DISPATCH {
             return Err(self.device.error(format_args!("rows of {width} texels are too wide for it")));
@@ -95,14 +97,24 @@ impl Backend for Gpu {
         self.device.name.clone()
     }
 
-    fn band_rows(&self, plan: &NormalPlan) -> usize {
-        let texel_bytes = plan.height_type.bytes().max(plan.format.channels.count() * plan.format.depth.bytes());
-        (BAND_BYTES / (plan.size.width() * texel_bytes)).clamp(1, GREATEST_DISPATCH)
+    fn band_rows(&self, row: RowBytes) -> usize {
+        (BAND_BYTES / row.read.max(row.written)).clamp(1, GREATEST_DISPATCH)
     }
 
-    fn normal(&self, plan: &NormalPlan, bands: &mut dyn HeightBands, sink: &mut dyn CodeSink) -> Result<()> {
+    fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
+        if plan.parallax.is_some() {
+            return Err(self.device.error("it bakes no parallax maps yet"));
+        }
         self.accept(plan)?;
-        Transfer::new(&self.device, plan)?.run(bands, sink)
+        Transfer::new(&self.device, plan)?.run(bands, sinks[0])
+    }
+
+    fn blend(&self, _: &BlendPlan, _: &mut dyn LayerBands, _: &mut dyn CodeSink) -> Result<()> {
+        Err(self.device.error("it blends no maps yet"))
+    }
+
+    fn parallax(&self, _: &ParallaxPlan, _: &mut dyn LayerBands, _: &mut dyn CodeSink) -> Result<()> {
+        Err(self.device.error("it bakes no parallax maps yet"))
     }
 }
 

@@ -3,7 +3,8 @@
 use super::kernel::{KernelSource, NORMAL_FAST, NORMAL_FLOAT_HEIGHTS, NORMAL_INTEGER_CODES, NORMAL_INTEGER_FLOATS};
 use crate::exact::CodeRounding;
 use crate::map::{Depth, Encoding, HeightType, NormalFormat};
-use crate::ops::normal::{FloatSlope, IntegerSlope, NormalPlan, Precision, Slope, Stencil};
+use crate::ops::Precision;
+use crate::ops::bake::{BakePlan, FloatSlope, IntegerSlope, Slope, Stencil};
 use bytemuck::{Pod, Zeroable};
 
 /// Texels that one invocation computes: rows of codes are padded to a multiple.
@@ -59,8 +60,8 @@ pub(crate) struct NormalKernel {
 
 impl NormalKernel {
     /// The kernel for a plan that stores `codes_per_texel` codes for a texel and, if `marked`, a mark for each row.
-    pub fn new(plan: &NormalPlan, codes_per_texel: usize, marked: bool) -> Self {
-        let rounding = CodeRounding::new(plan.format.encoding, plan.format.depth);
+    pub fn new(plan: &BakePlan, codes_per_texel: usize, marked: bool) -> Self {
+        let rounding = CodeRounding::new(format(plan).texel());
         let source = match (plan.precision, plan.slope) {
             (Precision::Fast, _) => NORMAL_FAST,
             (Precision::Exact, Slope::Float(_)) => NORMAL_FLOAT_HEIGHTS,
@@ -74,7 +75,7 @@ impl NormalKernel {
         Self {
             source,
             height_bits: 8 * plan.height_type.bytes() as u32,
-            code_bits: 8 * plan.format.depth.bytes() as u32,
+            code_bits: 8 * format(plan).depth.bytes() as u32,
             code_is_float: rounding.is_none(),
             codes_per_texel,
             marked,
@@ -109,7 +110,7 @@ pub(super) fn heights_row_bytes(width: usize, height_type: HeightType) -> usize 
 }
 
 /// What `Params` takes from the plan; places and sizes are for the caller.
-pub(super) fn params(plan: &NormalPlan) -> Params {
+pub(super) fn params(plan: &BakePlan) -> Params {
     let width = plan.size.width();
     let mut params = Params {
         width: width as u32,
@@ -117,10 +118,10 @@ pub(super) fn params(plan: &NormalPlan) -> Params {
         east_of_last: plan.edges.x.resolve(width as isize, width) as u32,
         centre: plan.stencil.centre,
         outer: plan.stencil.outer,
-        alpha: code_of_one(plan.format),
+        alpha: code_of_one(format(plan)),
         ..Params::zeroed()
     };
-    if let Some(rounding) = CodeRounding::new(plan.format.encoding, plan.format.depth) {
+    if let Some(rounding) = CodeRounding::new(format(plan).texel()) {
         (params.code_m, params.code_c) = (rounding.m, rounding.c);
         (params.code_least, params.code_greatest) = (rounding.least, rounding.greatest);
         (params.code_offset, params.code_mask) = (rounding.offset, rounding.mask);
@@ -136,7 +137,7 @@ pub(super) fn params(plan: &NormalPlan) -> Params {
 
 /// The code of 1, for the alpha channel of an opaque texture.
 fn code_of_one(format: NormalFormat) -> u32 {
-    match (format.depth, CodeRounding::new(format.encoding, format.depth)) {
+    match (format.depth, CodeRounding::new(format.texel())) {
         (_, Some(_)) if format.encoding == Encoding::Biased => (1 << (8 * format.depth.bytes())) - 1,
         (_, Some(rounding)) => rounding.stored(rounding.greatest),
         (Depth::Float16, None) => half::f16::ONE.to_bits().into(),
@@ -150,4 +151,9 @@ fn fits_64_bits(slope: IntegerSlope, stencil: Stencil, height_type: HeightType, 
     let squares = [slope.px.unsigned_abs(), slope.py.unsigned_abs()].map(|p| (u128::from(p) * greatest_sum).pow(2));
     let s = squares[0] + squares[1] + (slope.z as u128).pow(2);
     s.checked_mul((rounding.m as u128).pow(2)).is_some_and(|product| product < 1 << 64)
+}
+
+/// The format of the normal map.
+pub(super) fn format(plan: &BakePlan) -> NormalFormat {
+    plan.normal.unwrap_or_default()
 }

@@ -5,7 +5,8 @@ use super::normal::{NormalKernel, Params, WORKGROUP};
 use super::{Gpu, self_test};
 use crate::exact::Scale;
 use crate::map::{Channels, Convention, Depth, Encoding, HeightType, NormalFormat, Size};
-use crate::ops::normal::{NormalOptions, NormalPlan, Precision};
+use crate::ops::Precision;
+use crate::ops::bake::{BakePlan, NormalOptions};
 use naga::{AddressSpace, ScalarKind, StorageAccess, TypeInner};
 use std::collections::BTreeSet;
 use std::mem::offset_of;
@@ -147,7 +148,7 @@ fn constants_are_overrides_of_their_kernel() {
                 let format =
                     NormalFormat { encoding, depth: code_depth, channels: Channels::Xyz, convention: Convention::Gl };
                 let options = NormalOptions { format, precision, scale: Scale::texels(3), ..Default::default() };
-                let plan = NormalPlan::new(&options, Size::new(5, 5).unwrap(), depth).unwrap();
+                let plan = BakePlan::new(&options.into(), Size::new(5, 5).unwrap(), depth).unwrap();
                 let kernel = NormalKernel::new(&plan, 3, true);
                 let module = naga::front::wgsl::parse_str(&kernel.source.text()).unwrap();
                 let overrides: BTreeSet<_> = module.overrides.iter().filter_map(|(_, o)| o.name.clone()).collect();

@@ -1,13 +1,15 @@
 //! Known-answer tests: a device that computes other bytes than the specification is not used.
 
 use super::device::Device;
+use super::normal;
 use super::transfer::Transfer;
 use crate::backend::Backend;
 use crate::backend::cpu::Reference;
 use crate::error::Result;
 use crate::exact::{Rational, Scale};
 use crate::map::{Depth, Encoding, Grid, HeightMap, HeightType, NormalFormat, NormalMap};
-use crate::ops::normal::{Filter, NormalOptions, NormalPlan, Precision};
+use crate::ops::Precision;
+use crate::ops::bake::{BakePlan, Filter, NormalOptions};
 use crate::stream::{MapBands, MapSink};
 
 const WIDTH: usize = 67;
@@ -17,32 +19,33 @@ const HEIGHT: usize = 16;
 pub(super) fn run(device: &Device) -> Result<()> {
     for (heights, options) in cases()? {
         let map = noise(heights)?;
-        test(device, &map, &NormalPlan::new(&options, map.size(), heights)?)?;
+        test(device, &map, &BakePlan::new(&options.into(), map.size(), heights)?)?;
     }
     Ok(())
 }
 
 /// Before a plan's first bake: a small map with the plan's own options, once for each kernel.
-pub(super) fn accept(device: &Device, plan: &NormalPlan) -> Result<()> {
+pub(super) fn accept(device: &Device, plan: &BakePlan) -> Result<()> {
     if plan.precision == Precision::Exact && !device.is_tested(&Transfer::kernel(plan)) {
         let map = noise(plan.height_type)?;
-        test(device, &map, &NormalPlan { size: map.size(), ..*plan })?;
+        test(device, &map, &BakePlan { size: map.size(), ..*plan })?;
     }
     Ok(())
 }
 
 /// Bakes a map on the device and by the reference; the device remembers a kernel that passes.
-fn test(device: &Device, map: &HeightMap, plan: &NormalPlan) -> Result<()> {
-    let mut normal = NormalMap::zeroed(plan.size, plan.format);
+fn test(device: &Device, map: &HeightMap, plan: &BakePlan) -> Result<()> {
+    let row_codes = normal::format(plan).texel().row_codes(plan.size.width());
+    let mut normal = NormalMap::zeroed(plan.size, normal::format(plan));
     let mut expected = normal.clone();
     let bands = || MapBands::new(map, plan.edges.y, HEIGHT / 2);
-    Transfer::new(device, plan)?.run(&mut bands(), &mut MapSink::new(normal.codes_mut(), plan.row_codes()))?;
-    Reference.normal(plan, &mut bands(), &mut MapSink::new(expected.codes_mut(), plan.row_codes()))?;
+    Transfer::new(device, plan)?.run(&mut bands(), &mut MapSink::new(normal.codes_mut(), row_codes))?;
+    Reference.bake(plan, &mut bands(), &mut [&mut MapSink::new(expected.codes_mut(), row_codes)])?;
     if normal == expected {
         device.set_tested(Transfer::kernel(plan));
         return Ok(());
     }
-    let (heights, NormalFormat { encoding, depth, .. }) = (map.height_type(), plan.format);
+    let (heights, NormalFormat { encoding, depth, .. }) = (map.height_type(), normal::format(plan));
     let reason = format!("it fails the self-test: wrong {encoding} codes of {depth} bits for {heights} heights");
     Err(device.error(reason))
 }

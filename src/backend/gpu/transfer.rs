@@ -5,7 +5,7 @@ use super::normal::{self, NormalKernel, Params, TEXELS_PER_INVOCATION, WORKGROUP
 use super::slot::Slot;
 use crate::error::Result;
 use crate::map::CodesMut;
-use crate::ops::normal::NormalPlan;
+use crate::ops::bake::BakePlan;
 use crate::stream::{Band, CodeSink, HeightBand, HeightBands};
 use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, channel};
@@ -30,7 +30,7 @@ struct InFlight {
 /// One bake on a device.
 pub(super) struct Transfer<'a> {
     device: &'a Device,
-    plan: &'a NormalPlan,
+    plan: &'a BakePlan,
     kernel: NormalKernel,
     pipeline: ComputePipeline,
     flying: VecDeque<InFlight>,
@@ -38,15 +38,15 @@ pub(super) struct Transfer<'a> {
 
 impl<'a> Transfer<'a> {
     /// Prepares the kernel.
-    pub fn new(device: &'a Device, plan: &'a NormalPlan) -> Result<Self> {
+    pub fn new(device: &'a Device, plan: &'a BakePlan) -> Result<Self> {
         let kernel = Self::kernel(plan);
         let pipeline = device.guarded(|| Ok(device.pipeline(&kernel)))?;
         Ok(Self { device, plan, kernel, pipeline, flying: VecDeque::new() })
     }
 
     /// The kernel that a plan runs.
-    pub fn kernel(plan: &NormalPlan) -> NormalKernel {
-        NormalKernel::new(plan, plan.format.channels.count(), true)
+    pub fn kernel(plan: &BakePlan) -> NormalKernel {
+        NormalKernel::new(plan, normal::format(plan).channels.count(), true)
     }
 
     /// Bakes all bands.
@@ -127,10 +127,8 @@ impl<'a> Transfer<'a> {
             }
         }
         // What the sink has to say is not the device's fault: it stands outside the guard.
-        sink.write(rows, &mut |target| {
-            read_rows(codes, row_bytes, rows, target);
-            Ok(())
-        })?;
+        read_rows(codes, row_bytes, rows, &mut sink.room(rows)?);
+        sink.filled()?;
         drop(view);
         device.guarded(|| {
             slot.download.unmap();

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::io::replace::{Output, Replacement};
 use crate::io::sink::{FileSink, RowEncoder, cannot_hold};
-use crate::map::{Channels, CodesRef, Depth, NormalFormat, Size};
+use crate::map::{CodesRef, Depth, Size, TexelFormat};
 use crate::stream::RowSink;
 use exr::block::chunk::Chunk;
 use exr::block::{BlockIndex, UncompressedBlock};
@@ -40,7 +40,7 @@ struct ExrEncoder {
 }
 
 /// Creates an EXR with the channels R, G and B, or R and G, of half or float samples.
-pub(crate) fn create(path: &Path, size: Size, format: NormalFormat) -> Result<Box<dyn RowSink>> {
+pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box<dyn RowSink>> {
     let sample_type = match format.depth {
         Depth::Float16 => SampleType::F16,
         Depth::Float32 => SampleType::F32,
@@ -50,8 +50,8 @@ pub(crate) fn create(path: &Path, size: Size, format: NormalFormat) -> Result<Bo
     };
     // EXR sorts channels by name.
     let (names, order): (&[&str], &'static [usize]) = match format.channels {
-        Channels::Xyz => (&["B", "G", "R"], &[2, 1, 0]),
-        Channels::Xy => (&["G", "R"], &[1, 0]),
+        3 => (&["B", "G", "R"], &[2, 1, 0]),
+        _ => (&["G", "R"], &[1, 0]),
     };
     let channels = names.iter().map(|name| ChannelDescription::new(*name, sample_type, true)).collect();
     let header = Header::new(Text::from("normals"), (size.width(), size.height()), channels).with_encoding(

@@ -9,7 +9,7 @@ use super::zlib::{IdatStream, first_idat, stored_bytes};
 use crate::error::{Error, Result};
 use crate::io::replace::{Output, Replacement};
 use crate::io::sink::{FileSink, RowEncoder, cannot_hold};
-use crate::map::{Channels, CodesRef, Depth, Encoding, NormalFormat, Size};
+use crate::map::{CodesRef, Depth, Encoding, Size, TexelFormat};
 use crate::stream::RowSink;
 use png::chunk::IDAT;
 use png::{BitDepth, ColorType, Encoder, EncodingError};
@@ -30,7 +30,7 @@ struct PngEncoder {
     stream: IdatStream,
     /// The same file, to fill the room that was left.
     file: Output,
-    channels: Channels,
+    channels: usize,
     depth: Depth,
     /// Bytes of a row and of a texel in the file.
     row_bytes: usize,
@@ -42,7 +42,7 @@ struct PngEncoder {
 }
 
 /// Creates a PNG with 8 or 16 bits, RGB; xy maps leave blue 0, since PNG's only two-channel type means transparency.
-pub(crate) fn create(path: &Path, size: Size, format: NormalFormat) -> Result<Box<dyn RowSink>> {
+pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box<dyn RowSink>> {
     let depth = match (format.encoding, format.depth) {
         (Encoding::Unorm | Encoding::Biased, Depth::Bits8) => BitDepth::Eight,
         (Encoding::Unorm | Encoding::Biased, Depth::Bits16) => BitDepth::Sixteen,
@@ -86,7 +86,7 @@ impl RowEncoder for PngEncoder {
     }
 
     fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
-        let row_codes = self.row_bytes / self.texel_bytes * self.channels.count();
+        let row_codes = self.row_bytes / self.texel_bytes * self.channels;
         let bytes = rows.bytes().chunks_exact(row_codes * self.depth.bytes());
         for (row, codes) in (first..).zip(bytes) {
             self.samples(codes);
@@ -116,13 +116,13 @@ impl PngEncoder {
     fn samples(&mut self, codes: &[u8]) {
         let texels = self.current.chunks_exact_mut(self.texel_bytes);
         match (self.depth, self.channels) {
-            (Depth::Bits8, Channels::Xyz) => self.current.copy_from_slice(codes),
-            (Depth::Bits8, Channels::Xy) => {
+            (Depth::Bits8, 3) => self.current.copy_from_slice(codes),
+            (Depth::Bits8, 2) => {
                 texels.zip(codes.chunks_exact(2)).for_each(|(rgb, xy)| rgb.copy_from_slice(&[xy[0], xy[1], 0]));
             }
             (_, channels) => {
                 let big_endian = |code: &[u8]| u16::from_ne_bytes([code[0], code[1]]).to_be_bytes();
-                for (rgb, codes) in texels.zip(codes.chunks_exact(2 * channels.count())) {
+                for (rgb, codes) in texels.zip(codes.chunks_exact(2 * channels)) {
                     rgb[4..].fill(0);
                     let samples = rgb.chunks_exact_mut(2).zip(codes.chunks_exact(2));
                     samples.for_each(|(sample, code)| sample.copy_from_slice(&big_endian(code)));

@@ -6,7 +6,7 @@
 use crate::error::{Error, Result};
 use crate::io::replace::{Output, Replacement};
 use crate::io::sink::{FileSink, RowEncoder, cannot_hold};
-use crate::map::{Channels, CodesRef, Depth, Encoding, NormalFormat, Size};
+use crate::map::{CodesRef, Depth, Encoding, Size, TexelFormat};
 use crate::stream::RowSink;
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -19,13 +19,13 @@ struct TiffEncoder {
     path: PathBuf,
     output: Output,
     size: Size,
-    format: NormalFormat,
+    format: TexelFormat,
     /// BigTIFF, whose offsets have 64 bits.
     big: bool,
 }
 
 /// Creates a TIFF: 8 and 16-bit integers, signed for snorm, and 32-bit floats; xy maps have two samples.
-pub(crate) fn create(path: &Path, size: Size, format: NormalFormat) -> Result<Box<dyn RowSink>> {
+pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box<dyn RowSink>> {
     if format.depth == Depth::Float16 {
         return Err(cannot_hold(path, format, "float with 32f bits in TIFF; EXR holds 16f"));
     }
@@ -70,7 +70,7 @@ impl RowEncoder for TiffEncoder {
 
 impl TiffEncoder {
     fn row_bytes(&self) -> usize {
-        self.size.width() * self.format.channels.count() * self.format.depth.bytes()
+        self.size.width() * self.format.bytes()
     }
 
     /// Where a row begins; all rows stand one after the other behind the header.
@@ -105,7 +105,7 @@ impl TiffEncoder {
     }
 
     fn entries(&self) -> Vec<Entry> {
-        let samples = self.format.channels.count();
+        let samples = self.format.channels;
         let (width, height) = (self.size.width() as u64, self.size.height() as u64);
         let (row_bytes, rows_per_strip) = (self.row_bytes() as u64, self.rows_per_strip() as u64);
         let strips = height.div_ceil(rows_per_strip);
@@ -119,8 +119,8 @@ impl TiffEncoder {
         let bits = 8 * self.format.depth.bytes() as u16;
         // Two samples are no colour: one is "grey" and the other an extra sample without a meaning.
         let (photometric, extra) = match self.format.channels {
-            Channels::Xyz => (2, None),
-            Channels::Xy => (1, Some((338, Values::Short(vec![0])))),
+            3 => (2, None),
+            _ => (1, Some((338, Values::Short(vec![0])))),
         };
         let mut entries = vec![
             (256, Values::Long(vec![width])),
@@ -203,7 +203,8 @@ mod tests {
     fn a_big_tiff_differs_only_in_its_offsets() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("big.tif");
-        let (size, format) = (Size::new(2, 3).unwrap(), NormalFormat { depth: Depth::Bits16, ..Default::default() });
+        let (size, format) =
+            (Size::new(2, 3).unwrap(), TexelFormat { encoding: Encoding::Unorm, depth: Depth::Bits16, channels: 3 });
         let replacement = Replacement::create(&path).unwrap();
         let output = replacement.output().unwrap();
         let mut encoder = TiffEncoder { path: path.clone(), output, size, format, big: true };

@@ -1,9 +1,10 @@
 //! The options resolved for one map: the constants that every backend computes with.
 
-use super::{Filter, NormalOptions, Precision};
-use crate::error::Result;
+use super::{BakeOptions, Filter};
+use crate::error::{Error, Result};
 use crate::exact::AxisScale;
-use crate::map::{Convention, Edges, HeightType, NormalFormat, Size};
+use crate::map::{Convention, Edges, HeightType, NormalFormat, ParallaxFormat, Size, TexelFormat};
+use crate::ops::Precision;
 
 /// A slope stencil as data.
 ///
@@ -64,41 +65,60 @@ pub(crate) enum Slope {
 
 /// One bake, ready for a backend.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct NormalPlan {
+pub(crate) struct BakePlan {
     pub size: Size,
     pub height_type: HeightType,
     pub stencil: Stencil,
     pub edges: Edges,
     pub slope: Slope,
-    pub format: NormalFormat,
+    pub normal: Option<NormalFormat>,
+    pub parallax: Option<ParallaxFormat>,
     pub precision: Precision,
     /// The scale that the bake really uses.
     pub scale: AxisScale,
 }
 
-impl NormalPlan {
+impl BakePlan {
     /// Checks the options and resolves them for a map.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] names the option that is out of range.
-    pub fn new(options: &NormalOptions, size: Size, height_type: HeightType) -> Result<Self> {
-        options.format.check()?;
+    pub fn new(options: &BakeOptions, size: Size, height_type: HeightType) -> Result<Self> {
+        let BakeOptions { edges, normal, parallax, precision, .. } = *options;
+        let outputs = [normal.map(|format| format.texel()), parallax.map(|format| format.texel())];
+        outputs.iter().flatten().try_for_each(TexelFormat::check)?;
+        if outputs == [None; 2] {
+            return Err(Error::parameter("maps", "none", "normal, parallax or both"));
+        }
         let scale = options.scale.resolve(size)?;
         let stencil = Stencil::from(options.filter);
         // The normal leans away from the slope (eq. 7.43); green up turns y around again.
-        let y = match options.format.convention {
+        let y = match normal.unwrap_or_default().convention {
             Convention::Gl => scale.y,
             Convention::Dx => -scale.y,
         };
         let slope = match height_type.greatest_code() {
-            Some(greatest) => Slope::Integer(IntegerSlope::new(-scale.x, y, scale.q, stencil, greatest)),
+            Some(greatest) => {
+                let kept = if parallax.is_some() { greatest } else { 1 };
+                Slope::Integer(IntegerSlope::new(-scale.x, y, scale.q, stencil, greatest, kept))
+            }
             None => {
                 let divisor = i64::from(scale.q) * i64::from(stencil.divisor());
                 Slope::Float(FloatSlope::new(-scale.x, y, divisor))
             }
         };
-        let NormalOptions { edges, format, precision, .. } = *options;
-        Ok(Self { size, height_type, stencil, edges, slope, format, precision, scale })
+        Ok(Self { size, height_type, stencil, edges, slope, normal, parallax, precision, scale })
+    }
+
+    /// The formats of the maps that are baked: normal, then parallax.
+    pub fn outputs(&self) -> impl Iterator<Item = TexelFormat> {
+        let normal = self.normal.map(|format| format.texel());
+        normal.into_iter().chain(self.parallax.map(|format| format.texel()))
+    }
+
+    /// Bytes of all codes of a texel.
+    pub fn texel_bytes(&self) -> usize {
+        self.outputs().map(|format| format.bytes()).sum()
     }
 
     /// The slope constants in floats, whatever the heights are: what `fast` computes with on a GPU.
@@ -109,18 +129,13 @@ impl NormalPlan {
             Slope::Integer(IntegerSlope { px, py, z }) => FloatSlope::new(px, py, z),
         }
     }
-
-    /// Codes of one row.
-    pub fn row_codes(&self) -> usize {
-        self.size.width() * self.format.channels.count()
-    }
 }
 
 impl IntegerSlope {
-    /// (X, Y, Z) = (x Gx, y Gy, q D M) without the factor that they share.
-    fn new(x: i32, y: i32, q: u32, stencil: Stencil, greatest_height: u32) -> Self {
+    /// (X, Y, Z) = (x Gx, y Gy, q D M) without the factor that they share; Z stays a multiple of `kept`, 1 or M.
+    fn new(x: i32, y: i32, q: u32, stencil: Stencil, greatest_height: u32, kept: u32) -> Self {
         let z = i64::from(q) * i64::from(stencil.divisor()) * i64::from(greatest_height);
-        let common = [x, y].map(|part| i64::from(part.unsigned_abs())).into_iter().fold(z, gcd);
+        let common = [x, y].map(|part| i64::from(part.unsigned_abs())).into_iter().fold(z / i64::from(kept), gcd);
         let part = |part: i32| (i64::from(part) / common) as i32;
         Self { px: part(x), py: part(y), z: z / common }
     }

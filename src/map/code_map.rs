@@ -1,19 +1,27 @@
-//! Normal maps with their format attached.
+//! Normal and parallax maps: codes with their format attached.
 
-use super::{Codes, CodesRef, NormalFormat, Size};
+use super::{Codes, CodesMut, CodesRef, MapFormat, NormalFormat, ParallaxFormat, Size};
 use crate::error::Result;
 
-/// A tangent-space normal map and what its codes mean.
+/// A tangent-space normal map.
 ///
 /// Codes stand texel by texel, in rows from the top: x, y, z or x, y, as [`NormalFormat::channels`] says.
+pub type NormalMap = CodeMap<NormalFormat>;
+
+/// A parallax map: n_z (2h - 1) for each texel, in rows from the top (FGED2 section 7.7).
+///
+/// A shader multiplies it by half the scale of the normal map.
+pub type ParallaxMap = CodeMap<ParallaxFormat>;
+
+/// A map of codes, and what they mean: [`NormalMap`] or [`ParallaxMap`].
 #[derive(Debug, Clone, PartialEq)]
-pub struct NormalMap {
+pub struct CodeMap<F> {
     size: Size,
-    format: NormalFormat,
+    format: F,
     codes: Codes,
 }
 
-impl NormalMap {
+impl<F: MapFormat> CodeMap<F> {
     /// A map of these codes, given texel by texel, row by row.
     ///
     /// ```
@@ -27,15 +35,17 @@ impl NormalMap {
     /// # Errors
     /// [`crate::Error::Parameter`] if the format's encoding and depth do not go together, or `codes` is not of its
     /// depth and `size`.
-    pub fn new(size: Size, format: NormalFormat, codes: Codes) -> Result<Self> {
-        format.check()?;
-        format.check_codes(size, codes.as_ref().len(), codes.as_ref().depth())?;
+    pub fn new(size: Size, format: F, codes: Codes) -> Result<Self> {
+        let texel = format.stored();
+        texel.check()?;
+        texel.check_codes(size, codes.as_ref().len(), codes.as_ref().depth())?;
         Ok(Self { size, format, codes })
     }
 
     /// Room for a map, for a backend to fill.
-    pub(crate) fn zeroed(size: Size, format: NormalFormat) -> Self {
-        let codes = Codes::zeroed(format.depth, size.texels() * format.channels.count());
+    pub(crate) fn zeroed(size: Size, format: F) -> Self {
+        let texel = format.stored();
+        let codes = Codes::zeroed(texel.depth, size.texels() * texel.channels);
         Self { size, format, codes }
     }
 
@@ -45,7 +55,7 @@ impl NormalMap {
     }
 
     /// What the codes mean.
-    pub fn format(&self) -> NormalFormat {
+    pub fn format(&self) -> F {
         self.format
     }
 
@@ -55,7 +65,7 @@ impl NormalMap {
     }
 
     /// The codes, to fill.
-    pub(crate) fn codes_mut(&mut self) -> super::CodesMut<'_> {
+    pub(crate) fn codes_mut(&mut self) -> CodesMut<'_> {
         self.codes.as_mut()
     }
 }
@@ -79,5 +89,7 @@ mod tests {
         let mixed = NormalFormat { depth: Depth::Float32, ..xy };
         let mixed = refused(mixed, Codes::F32(vec![0.0; 4]));
         assert_eq!(mixed, "bits is 32f: it must be 8 or 16 for the encodings unorm, snorm and biased");
+        let parallax = ParallaxMap::new(Size::new(2, 1).unwrap(), ParallaxFormat::default(), Codes::U8(vec![0, 127]));
+        assert_eq!(parallax.unwrap().codes(), CodesRef::U8(&[0, 127]));
     }
 }

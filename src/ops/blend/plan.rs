@@ -1,0 +1,69 @@
+//! The options resolved for two maps: the constants that every backend computes with.
+
+use super::{BlendMethod, BlendOptions};
+use crate::error::{Error, Result};
+use crate::exact::Weights;
+use crate::map::{HeightType, NormalFormat, Size};
+use crate::ops::{LayerReading, Precision};
+
+/// The codes of a mask: 8 or 16 bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Mask {
+    /// `U8` or `U16`.
+    pub height_type: HeightType,
+    /// The code M of t = 1.
+    pub greatest: u32,
+}
+
+/// One blend, ready for a backend.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct BlendPlan {
+    pub size: Size,
+    /// The formats of the two normal maps.
+    pub inputs: [NormalFormat; 2],
+    /// How their texels are read: green as the result has it.
+    pub layers: [LayerReading; 2],
+    pub mask: Option<Mask>,
+    pub method: BlendMethod,
+    /// Of [`BlendMethod::Weighted`]; 1 and 1 for the methods without weights.
+    pub weights: Weights,
+    pub format: NormalFormat,
+    pub precision: Precision,
+}
+
+impl BlendPlan {
+    /// Checks the options and resolves them for a base of `size`, two normal maps and, perhaps, a mask.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] names the option that is out of range, or the mask that is missing or not wanted.
+    pub fn new(
+        options: &BlendOptions,
+        size: Size,
+        inputs: [NormalFormat; 2],
+        mask: Option<HeightType>,
+    ) -> Result<Self> {
+        let BlendOptions { method, format, precision, .. } = *options;
+        [inputs[0], inputs[1], format].iter().try_for_each(|format| format.texel().check())?;
+        match (method, mask) {
+            (BlendMethod::Masked, None) => return Err(Error::parameter("mask", "missing", "given for a masked blend")),
+            (BlendMethod::Masked, Some(_)) | (_, None) => {}
+            (_, Some(_)) => return Err(Error::parameter("mask", "given", "left out unless the blend is masked")),
+        }
+        let weights = match method {
+            BlendMethod::Weighted { base, detail } => Weights::new(base, detail)?,
+            _ => Weights::new(1.into(), 1.into())?,
+        };
+        let mask = mask.map(|height_type| match height_type {
+            HeightType::U8 => Mask { height_type, greatest: 255 },
+            HeightType::U16 | HeightType::F32 => Mask { height_type: HeightType::U16, greatest: 65_535 },
+        });
+        let layers = inputs.map(|input| LayerReading::new(input, format.convention));
+        Ok(Self { size, inputs, layers, mask, method, weights, format, precision })
+    }
+
+    /// The greatest components L1 and L2 if both maps hold integers: then the blend is correctly rounded.
+    pub fn integer_scales(&self) -> Option<[i32; 2]> {
+        let [base, detail] = self.layers.map(|layer| layer.codes.map(|codes| codes.greatest));
+        Some([base?, detail?])
+    }
+}

@@ -1,0 +1,221 @@
+//! Normal maps, masks and heights as layers.
+
+use super::layers::LayerSource;
+use super::reader::RowSource;
+use crate::error::{Error, Result};
+use crate::map::{Codes, CodesMut, CodesRef, Depth, HeightMap, HeightType, Heights, HeightsMut, NormalFormat};
+use crate::map::{NormalMap, Size};
+use crate::ops::GREATEST_COMPONENT;
+
+/// A normal map that is read from the top.
+pub trait NormalSource: Send {
+    /// Width and height.
+    fn size(&self) -> Size;
+
+    /// What its codes mean.
+    fn format(&self) -> NormalFormat;
+
+    /// Reads the next rows: as many as `rows` has room for, never more than are left.
+    ///
+    /// # Errors
+    /// The reason that the file gives.
+    fn read(&mut self, rows: CodesMut<'_>) -> Result<()>;
+}
+
+impl NormalSource for Box<dyn NormalSource> {
+    fn size(&self) -> Size {
+        self.as_ref().size()
+    }
+
+    fn format(&self) -> NormalFormat {
+        self.as_ref().format()
+    }
+
+    fn read(&mut self, rows: CodesMut<'_>) -> Result<()> {
+        self.as_mut().read(rows)
+    }
+}
+
+/// Reads a whole normal map.
+///
+/// # Errors
+/// As [`NormalSource::read`].
+pub fn read_normals(source: &mut dyn NormalSource) -> Result<NormalMap> {
+    let mut map = NormalMap::zeroed(source.size(), source.format());
+    source.read(map.codes_mut())?;
+    Ok(map)
+}
+
+/// A normal map in memory, repeated from its first texel on, or cut, to fill another size.
+pub(crate) struct Tiled {
+    map: NormalMap,
+    size: Size,
+    next_row: usize,
+}
+
+impl Tiled {
+    pub fn new(map: NormalMap, size: Size) -> Self {
+        Self { map, size, next_row: 0 }
+    }
+}
+
+impl NormalSource for Tiled {
+    fn size(&self) -> Size {
+        self.size
+    }
+
+    fn format(&self) -> NormalFormat {
+        self.map.format()
+    }
+
+    fn read(&mut self, mut rows: CodesMut<'_>) -> Result<()> {
+        let bytes_of = |width: usize| width * self.map.format().texel().bytes();
+        let tile = self.map.codes().bytes().chunks_exact(bytes_of(self.map.size().width()));
+        let tile: Vec<&[u8]> = tile.collect();
+        for row in rows.bytes_mut().chunks_exact_mut(bytes_of(self.size.width())) {
+            let from = tile[self.next_row % tile.len()];
+            row.chunks_mut(from.len()).for_each(|to| to.copy_from_slice(&from[..to.len()]));
+            self.next_row += 1;
+        }
+        Ok(())
+    }
+}
+
+/// A normal map as a layer; its floats are checked as they pass.
+pub(crate) struct NormalLayer<S> {
+    source: S,
+    next_row: usize,
+}
+
+impl<S: NormalSource> NormalLayer<S> {
+    pub fn new(source: S) -> Self {
+        Self { source, next_row: 0 }
+    }
+}
+
+impl<S: NormalSource> LayerSource for NormalLayer<S> {
+    fn depth(&self) -> Depth {
+        self.source.format().depth
+    }
+
+    fn row_codes(&self) -> usize {
+        self.source.format().texel().row_codes(self.source.size().width())
+    }
+
+    fn read(&mut self, mut rows: CodesMut<'_>) -> Result<()> {
+        let all = 0..rows.len();
+        self.source.read(rows.slice(all))?;
+        let (width, format) = (self.source.size().width(), self.source.format());
+        check_components(rows.as_ref(), format, width, self.next_row)?;
+        self.next_row += rows.len() / self.row_codes();
+        Ok(())
+    }
+}
+
+/// Fails on the first float component that is no direction's: NaN, infinite or beyond 65536. The rows are `width`
+/// texels wide and begin with row `first_row`.
+pub(crate) fn check_components(
+    codes: CodesRef<'_>,
+    format: NormalFormat,
+    width: usize,
+    first_row: usize,
+) -> Result<()> {
+    // NaN compares as not within.
+    let is_within = |value: f32| value.abs() <= GREATEST_COMPONENT;
+    let found = match codes {
+        CodesRef::U8(_) | CodesRef::U16(_) => None,
+        CodesRef::F16(codes) => codes.iter().position(|code| !is_within(code.to_f32())).map(|i| (i, codes[i].to_f32())),
+        CodesRef::F32(codes) => codes.iter().position(|code| !is_within(*code)).map(|i| (i, codes[i])),
+    };
+    let Some((i, value)) = found else { return Ok(()) };
+    let texel = i / format.channels.count();
+    Err(Error::NoDirection { x: texel % width, y: first_row + texel / width, value })
+}
+
+/// The heights of a source as a layer.
+pub(crate) struct HeightLayer(pub Box<dyn RowSource>);
+
+impl LayerSource for HeightLayer {
+    fn depth(&self) -> Depth {
+        match self.0.height_type() {
+            HeightType::U8 => Depth::Bits8,
+            HeightType::U16 => Depth::Bits16,
+            HeightType::F32 => Depth::Float32,
+        }
+    }
+
+    fn row_codes(&self) -> usize {
+        self.0.size().width()
+    }
+
+    fn read(&mut self, rows: CodesMut<'_>) -> Result<()> {
+        self.0.read(match rows {
+            CodesMut::U8(rows) => HeightsMut::U8(rows),
+            CodesMut::U16(rows) => HeightsMut::U16(rows),
+            CodesMut::F32(rows) => HeightsMut::F32(rows),
+            CodesMut::F16(_) => unreachable!("no height is a half"),
+        })
+    }
+}
+
+/// A mask as a layer: integer codes; floats are rounded to 16 bits.
+pub(crate) struct MaskLayer {
+    source: Box<dyn RowSource>,
+    /// A row of floats.
+    floats: Vec<f32>,
+}
+
+impl MaskLayer {
+    pub fn new(source: Box<dyn RowSource>) -> Self {
+        let floats = if source.height_type() == HeightType::F32 { source.size().width() } else { 0 };
+        Self { floats: vec![0.0; floats], source }
+    }
+}
+
+impl LayerSource for MaskLayer {
+    fn depth(&self) -> Depth {
+        if self.source.height_type() == HeightType::U8 { Depth::Bits8 } else { Depth::Bits16 }
+    }
+
+    fn row_codes(&self) -> usize {
+        self.source.size().width()
+    }
+
+    fn read(&mut self, rows: CodesMut<'_>) -> Result<()> {
+        match rows {
+            CodesMut::U8(rows) => self.source.read(HeightsMut::U8(rows)),
+            CodesMut::U16(rows) if self.floats.is_empty() => self.source.read(HeightsMut::U16(rows)),
+            CodesMut::U16(rows) => {
+                for row in rows.chunks_exact_mut(self.floats.len()) {
+                    self.source.read(HeightsMut::F32(&mut self.floats))?;
+                    row.iter_mut().zip(&self.floats).for_each(|(code, t)| *code = transition_code(*t));
+                }
+                Ok(())
+            }
+            CodesMut::F16(_) | CodesMut::F32(_) => unreachable!("a mask holds integers"),
+        }
+    }
+}
+
+/// The 16-bit code nearest to a transition; below 0 and above 1 count as 0 and 1.
+fn transition_code(t: f32) -> u16 {
+    (f64::from(t.clamp(0.0, 1.0)) * 65_535.0 + 0.5) as u16
+}
+
+/// The codes of a mask in memory.
+pub(crate) fn mask_codes(mask: &HeightMap) -> Codes {
+    match mask.heights() {
+        Heights::U8(codes) => Codes::U8(codes.to_vec()),
+        Heights::U16(codes) => Codes::U16(codes.to_vec()),
+        Heights::F32(heights) => Codes::U16(heights.iter().map(|t| transition_code(*t)).collect()),
+    }
+}
+
+/// Heights in memory as codes.
+pub(crate) fn height_codes(heights: Heights<'_>) -> CodesRef<'_> {
+    match heights {
+        Heights::U8(heights) => CodesRef::U8(heights),
+        Heights::U16(heights) => CodesRef::U16(heights),
+        Heights::F32(heights) => CodesRef::F32(heights),
+    }
+}
