@@ -11,9 +11,9 @@ use crate::ops::bake::{BakeOptions, BakePlan, NormalOptions, ParallaxOptions};
 use crate::ops::blend::{BlendInputs, BlendMethod, BlendOptions, BlendPlan};
 use crate::ops::parallax::ParallaxPlan;
 use crate::stream::{
-    BandReader, CodeSink, CodeWriter, HeightLayer, LayerReader, LayerSource, MapBands, MapLayers, MapSink, MaskLayer,
-    Monitor, NormalLayer, NormalSource, RowOrder, RowSink, RowSource, Tiled, check_components, height_codes,
-    mask_codes, read_map_watched, read_normals,
+    BandReader, CodeSink, CodeWriter, HeightLayer, HeightRows, LayerReader, LayerSource, MapBands, MapLayers, MapSink,
+    MaskLayer, Monitor, NormalLayer, NormalRows, RowOrder, RowsOut, Tiled, check_components, height_codes, mask_codes,
+    read_map_watched, read_normals,
 };
 use std::sync::Arc;
 
@@ -239,8 +239,8 @@ impl Baker {
     /// As [`Baker::bake_rows`].
     pub fn normal_rows(
         &self,
-        open: &dyn Fn() -> Result<Box<dyn RowSource>>,
-        create: &dyn Fn(Size) -> Result<Box<dyn RowSink>>,
+        open: &dyn Fn() -> Result<HeightRows>,
+        create: &dyn Fn(Size) -> Result<RowsOut>,
         options: &NormalOptions,
         monitor: &Monitor,
     ) -> Result<Baked> {
@@ -264,8 +264,8 @@ impl Baker {
     /// [`crate::Error::Parameter`] if `create` makes other sinks than the options ask for.
     pub fn bake_rows(
         &self,
-        open: &dyn Fn() -> Result<Box<dyn RowSource>>,
-        create: &dyn Fn(Size) -> Result<Maps<Box<dyn RowSink>>>,
+        open: &dyn Fn() -> Result<HeightRows>,
+        create: &dyn Fn(Size) -> Result<Maps<RowsOut>>,
         options: &BakeOptions,
         monitor: &Monitor,
     ) -> Result<Baked> {
@@ -323,8 +323,8 @@ impl Baker {
     /// As [`Baker::bake_rows`] and [`Baker::parallax_with_normals`].
     pub fn parallax_with_normals_rows(
         &self,
-        open: &dyn Fn() -> Result<(Box<dyn RowSource>, Box<dyn NormalSource>)>,
-        create: &dyn Fn(Size) -> Result<Box<dyn RowSink>>,
+        open: &dyn Fn() -> Result<(HeightRows, NormalRows)>,
+        create: &dyn Fn(Size) -> Result<RowsOut>,
         (format, precision): (ParallaxFormat, Precision),
         monitor: &Monitor,
     ) -> Result<Ran> {
@@ -382,8 +382,8 @@ impl Baker {
     /// As [`Baker::blend`]; what opening, reading, creating and writing report; [`crate::Error::Cancelled`].
     pub fn blend_rows(
         &self,
-        open: &dyn Fn() -> Result<BlendInputs<Box<dyn NormalSource>, Box<dyn RowSource>>>,
-        create: &dyn Fn(Size) -> Result<Box<dyn RowSink>>,
+        open: &dyn Fn() -> Result<BlendInputs<NormalRows, HeightRows>>,
+        create: &dyn Fn(Size) -> Result<RowsOut>,
         options: &BlendOptions,
         monitor: &Monitor,
     ) -> Result<Blended> {
@@ -433,7 +433,7 @@ fn whole_sink<'a>(codes: &'a mut CodesMut<'_>, format: TexelFormat, size: Size) 
     MapSink::new(codes.slice(all), format.row_codes(size.width()))
 }
 
-fn as_dyn<'a, S: CodeSink>(sinks: &'a mut [S]) -> Vec<&'a mut dyn CodeSink> {
+fn as_dyn<S: CodeSink>(sinks: &mut [S]) -> Vec<&mut dyn CodeSink> {
     sinks.iter_mut().map(|sink| sink as &mut dyn CodeSink).collect()
 }
 
@@ -460,7 +460,7 @@ fn check_same_size(parameter: &'static str, size: Size, wanted: Size) -> Result<
 
 /// Lets `produce` fill the rows of several maps, each written on a thread of its own, and completes them.
 fn write_watched(
-    sinks: Vec<Box<dyn RowSink>>,
+    sinks: Vec<RowsOut>,
     formats: &[TexelFormat],
     size: Size,
     order: RowOrder,
@@ -485,7 +485,7 @@ fn write_watched(
 fn stream(
     backend: &dyn Backend,
     plan: &BakePlan,
-    mut source: Box<dyn RowSource>,
+    mut source: HeightRows,
     order: RowOrder,
     monitor: &Monitor,
     sinks: &mut [&mut dyn CodeSink],

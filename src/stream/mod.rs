@@ -28,3 +28,12 @@ pub(crate) use reader::{BandReader, read_map_watched};
 pub use reader::{RowSource, read_map};
 pub use writer::RowSink;
 pub(crate) use writer::{CodeSink, CodeWriter};
+
+/// Rows of heights from anywhere.
+pub type HeightRows = Box<dyn RowSource>;
+
+/// Rows of normals from anywhere.
+pub type NormalRows = Box<dyn NormalSource>;
+
+/// Rows of codes to anywhere.
+pub type RowsOut = Box<dyn RowSink>;

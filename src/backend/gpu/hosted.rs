@@ -163,7 +163,7 @@ impl NormalBake<'_> {
             }
             CodeTarget::Texture(texture) => {
                 check_size("codes texture", texture, plan.size)?;
-                check_format("codes texture", texture, codes_formats(normal::format(&plan)), TextureUsages::COPY_DST)
+                check_format("codes texture", texture, codes_formats(normal::format(plan)), TextureUsages::COPY_DST)
             }
         }
     }
