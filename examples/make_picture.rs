@@ -1,6 +1,9 @@
-//! Draws the README's picture: height maps on the left, the normal maps that `bake` makes of them on the right.
+//! Draws the README's pictures: height maps beside the normal maps that `bake` makes of them, and a blend between its
+//! two normal maps.
 //!
-//!     cargo run --release -- bake examples/textures --out target/picture
+//!     cargo run --release -- bake examples/textures --out target/picture --maps normal,parallax
+//!     cargo run --release -- blend target/picture/walls/bricks_normal.png target/picture/cloth/weave_normal.png \
+//!         --tile -o target/picture/blend.png
 //!     cargo run --release --example make_picture
 
 use std::error::Error;
@@ -14,19 +17,37 @@ const SIDE: usize = 256;
 const GAP: usize = 8;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let pairs = [
-        ("walls/bricks_height.png", "walls/bricks_normal.png"),
-        ("ground/pebbles_disp.png", "ground/pebbles_normal.png"),
-    ];
-    let width = 4 * SIDE + 3 * GAP;
-    let mut picture = vec![255; 3 * width * SIDE];
-    for (index, (height, normal)) in pairs.iter().enumerate() {
-        let left = 2 * index * (SIDE + GAP);
-        place(&mut picture, width, left, &grey(&Path::new("examples/textures").join(height))?);
-        place(&mut picture, width, left + SIDE + GAP, &colours(&Path::new("target/picture").join(normal))?);
-    }
+    let heights = |name: &str| grey(&Path::new("examples/textures").join(name));
+    let baked = |name: &str| colours(&Path::new("target/picture").join(name));
     std::fs::create_dir_all("docs")?;
-    let mut encoder = png::Encoder::new(BufWriter::new(File::create("docs/bake.png")?), width as u32, SIDE as u32);
+    draw(
+        "docs/bake.png",
+        &[
+            heights("walls/bricks_height.png")?,
+            baked("walls/bricks_normal.png")?,
+            heights("ground/pebbles_disp.png")?,
+            baked("ground/pebbles_normal.png")?,
+        ],
+    )?;
+    draw(
+        "docs/material.png",
+        &[
+            baked("walls/bricks_parallax.png")?,
+            baked("walls/bricks_normal.png")?,
+            baked("cloth/weave_normal.png")?,
+            baked("blend.png")?,
+        ],
+    )
+}
+
+/// Writes squares of RGB rows side by side.
+fn draw(path: &str, squares: &[Vec<u8>]) -> Result<(), Box<dyn Error>> {
+    let width = squares.len() * (SIDE + GAP) - GAP;
+    let mut picture = vec![255; 3 * width * SIDE];
+    for (index, square) in squares.iter().enumerate() {
+        place(&mut picture, width, index * (SIDE + GAP), square);
+    }
+    let mut encoder = png::Encoder::new(BufWriter::new(File::create(path)?), width as u32, SIDE as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_compression(png::Compression::High);
     encoder.write_header()?.write_image_data(&picture)?;
@@ -34,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// The corner of a height map as grey RGB rows.
-fn grey(path: &Path) -> texbake::Result<Vec<u8>> {
+fn grey(path: &Path) -> Result<Vec<u8>, Box<dyn Error>> {
     let map = HeightMap::read(path)?;
     let width = map.size().width();
     let code = |i: usize| match map.heights() {
@@ -45,13 +66,18 @@ fn grey(path: &Path) -> texbake::Result<Vec<u8>> {
     Ok((0..SIDE * SIDE).flat_map(|i| [code(i / SIDE * width + i % SIDE); 3]).collect())
 }
 
-/// The corner of an 8-bit RGB PNG.
+/// The corner of an 8-bit grey or RGB PNG, repeated where it is smaller, as RGB rows.
 fn colours(path: &Path) -> Result<Vec<u8>, Box<dyn Error>> {
     let mut reader = png::Decoder::new(std::io::BufReader::new(File::open(path)?)).read_info()?;
     let mut bytes = vec![0; reader.output_buffer_size().ok_or("too large")?];
     let info = reader.next_frame(&mut bytes)?;
-    let rows = bytes.chunks(3 * info.width as usize).take(SIDE);
-    Ok(rows.flat_map(|row| row[..3 * SIDE].to_vec()).collect())
+    let (width, height) = (info.width as usize, info.height as usize);
+    let channels = info.color_type.samples();
+    let colour = |i: usize| {
+        let texel = (i / SIDE % height) * width + i % SIDE % width;
+        [0, 1, 2].map(|channel| bytes[texel * channels + channel % channels])
+    };
+    Ok((0..SIDE * SIDE).flat_map(colour).collect())
 }
 
 fn place(picture: &mut [u8], width: usize, left: usize, rgb: &[u8]) {
