@@ -98,13 +98,13 @@ mod names;
 mod ops;
 pub mod stream;
 
-pub use baker::{Baked, Baker, Blended, Maps, Ran};
+pub use baker::{Baked, Baker, Blended, Ran};
 pub use devices::{Device, devices};
 pub use error::{Error, Result};
 pub use exact::{AxisScale, Rational, Scale, Weights};
 pub use map::{
     Channels, CodeMap, Codes, CodesMut, CodesRef, Convention, Depth, Edge, Edges, Encoding, Grid, HeightMap,
-    HeightType, Heights, HeightsMut, MapFormat, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Size,
+    HeightType, Heights, HeightsMut, MapFormat, Maps, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Size,
 };
 pub use ops::Precision;
 pub use ops::bake::{BakeOptions, Filter, NormalOptions, ParallaxOptions};

@@ -5,6 +5,7 @@ mod codes;
 mod format;
 mod grid;
 mod height;
+mod maps;
 
 pub use code_map::{CodeMap, NormalMap, ParallaxMap};
 pub use codes::{Codes, CodesMut, CodesRef};
@@ -12,3 +13,4 @@ pub(crate) use format::TexelFormat;
 pub use format::{Channels, Convention, Depth, Edge, Edges, Encoding, MapFormat, NormalFormat, ParallaxFormat};
 pub use grid::{Grid, Size};
 pub use height::{HeightMap, HeightType, Heights, HeightsMut};
+pub use maps::Maps;

@@ -91,7 +91,7 @@ pub(crate) fn blend_floats(
     let [x, y, z] = match method {
         BlendMethod::Weighted { .. } | BlendMethod::Masked => {
             let (ca, cb) = (a * z2, b * z1);
-            [ca * x1 + cb * x2, ca * y1 + cb * y2, q * z1 * z2]
+            [ca * x1 + cb * x2, ca * y1 + cb * y2, q * (z1 * z2)]
         }
         BlendMethod::Linear => [x1 + x2, y1 + y2, z1 + z2],
         BlendMethod::Overlay => [overlay(x1, x2), overlay(y1, y2), overlay(z1, z2)],

@@ -1,0 +1,181 @@
+//! Height maps into normal and parallax maps.
+
+use super::write::{as_dyn, whole_sink, write_watched};
+use super::{Baker, Ran};
+use crate::backend::{Backend, RowBytes};
+use crate::error::{Error, Result};
+use crate::exact::AxisScale;
+use crate::map::{CodesMut, Edge, HeightMap, HeightType, Maps, NormalMap, ParallaxMap, Size, TexelFormat};
+use crate::ops::bake::{BakeOptions, BakePlan, NormalOptions, ParallaxOptions};
+use crate::stream::{
+    BandReader, CodeSink, HeightRows, MapBands, MapSink, Monitor, RowOrder, RowsOut, read_map_watched,
+};
+
+/// How a bake ran.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Baked {
+    /// Where it ran.
+    pub ran: Ran,
+    /// How the heights are stored.
+    pub height_type: HeightType,
+    /// The scale that was used, and whether it is the one that was asked for.
+    pub scale: AxisScale,
+}
+
+/// Maps up to this many bytes are held in memory if their last row is needed first and far; larger ones are read twice.
+const HELD_BYTES: usize = 64 << 20;
+
+impl Baker {
+    /// Bakes a height map into a normal map.
+    ///
+    /// [`Baker::normal_into`] also tells how it ran: a GPU of [`Baker::auto`] that fails leaves the job to the CPU.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] if an option is out of range; [`crate::Error::Device`] if a GPU without a
+    /// fallback fails.
+    pub fn normal(&self, heights: &HeightMap, options: &NormalOptions) -> Result<NormalMap> {
+        let mut map = NormalMap::zeroed(heights.size(), options.format);
+        self.normal_into(heights, options, map.codes_mut())?;
+        Ok(map)
+    }
+
+    /// Bakes a height map into the caller's memory: codes texel by texel, in rows from the top. Tells how it ran.
+    ///
+    /// # Errors
+    /// As [`Baker::normal`], and [`crate::Error::Parameter`] if `codes` is not of the format's depth and the map's
+    /// size.
+    pub fn normal_into(&self, heights: &HeightMap, options: &NormalOptions, codes: CodesMut<'_>) -> Result<Baked> {
+        options.format.texel().check()?;
+        options.format.texel().check_codes(heights.size(), codes.len(), codes.depth())?;
+        self.bake_into(heights, &(*options).into(), vec![codes])
+    }
+
+    /// Bakes a height map into a parallax map, n_z (2h - 1), with the normals of the heights themselves.
+    ///
+    /// Float heights beyond 0 and 1 count as 0 and 1 in (2h - 1), and as they are in n_z.
+    ///
+    /// # Errors
+    /// As [`Baker::normal`].
+    pub fn parallax(&self, heights: &HeightMap, options: &ParallaxOptions) -> Result<ParallaxMap> {
+        options.format.texel().check()?;
+        let mut map = ParallaxMap::zeroed(heights.size(), options.format);
+        self.bake_into(heights, &(*options).into(), vec![map.codes_mut()])?;
+        Ok(map)
+    }
+
+    /// Bakes a height map into the maps that the options ask for, in one pass: the same bytes as one after the other.
+    ///
+    /// ```
+    /// use texbake::{BakeOptions, Baker, Grid, HeightMap, NormalFormat, ParallaxFormat, Scale};
+    ///
+    /// let heights = HeightMap::from(Grid::from_fn(64, 64, |x, y| (x ^ y) as u8)?);
+    /// let (normal, parallax) = (Some(NormalFormat::default()), Some(ParallaxFormat::default()));
+    /// let options = BakeOptions { scale: Scale::texels(24), normal, parallax, ..Default::default() };
+    /// let maps = Baker::cpu().bake(&heights, &options)?;
+    /// assert!(maps.normal.is_some() && maps.parallax.is_some());
+    /// # Ok::<(), texbake::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Baker::normal`], and [`crate::Error::Parameter`] if no map is asked for.
+    pub fn bake(&self, heights: &HeightMap, options: &BakeOptions) -> Result<Maps<NormalMap, ParallaxMap>> {
+        BakePlan::new(options, heights.size(), heights.height_type())?;
+        let mut normal = options.normal.map(|format| NormalMap::zeroed(heights.size(), format));
+        let mut parallax = options.parallax.map(|format| ParallaxMap::zeroed(heights.size(), format));
+        let normal_codes = normal.as_mut().map(NormalMap::codes_mut);
+        let codes = normal_codes.into_iter().chain(parallax.as_mut().map(ParallaxMap::codes_mut)).collect();
+        self.bake_into(heights, options, codes)?;
+        Ok(Maps { normal, parallax })
+    }
+
+    /// Bakes into the codes of the plan's maps, one after the other.
+    fn bake_into(&self, heights: &HeightMap, options: &BakeOptions, mut maps: Vec<CodesMut<'_>>) -> Result<Baked> {
+        let plan = BakePlan::new(options, heights.size(), heights.height_type())?;
+        let (ran, ()) = self.run(|backend| {
+            let mut bands = MapBands::new(heights, plan.edges.y, backend.map_band_rows(RowBytes::of_bake(&plan)));
+            let whole = maps.iter_mut().zip(plan.outputs()).map(|(codes, format)| whole_sink(codes, format, plan.size));
+            let mut sinks: Vec<MapSink<'_>> = whole.collect();
+            backend.bake(&plan, &mut bands, &mut as_dyn(&mut sinks))?;
+            Ok((plan.size, ()))
+        })?;
+        Ok(Baked { ran, height_type: plan.height_type, scale: plan.scale })
+    }
+
+    /// Bakes rows from `open` into rows of a normal map for `create` while they are read and written: as
+    /// [`Baker::bake_rows`] with this one map.
+    ///
+    /// # Errors
+    /// As [`Baker::bake_rows`].
+    pub fn normal_rows(
+        &self,
+        open: &dyn Fn() -> Result<HeightRows>,
+        create: &dyn Fn(Size) -> Result<RowsOut>,
+        options: &NormalOptions,
+        monitor: &Monitor,
+    ) -> Result<Baked> {
+        let create = |size| Ok(Maps { normal: Some(create(size)?), parallax: None });
+        self.bake_rows(open, &create, &(*options).into(), monitor)
+    }
+
+    /// Bakes rows from `open` into rows for `create` while they are read and written.
+    ///
+    /// A few bands are in memory at a time, however high the map. The exception is a map whose edge wraps from top to
+    /// bottom and whose source cannot seek ([`RowSource::last_row_is_near`]: PNG), for a sink that cannot take row 0
+    /// last ([`RowSink::takes_first_row_last`]: EXR): its heights are held if they are no more than 64 MiB, else
+    /// decoded twice. What the source itself holds comes on top: [`crate::io::open_heights`] decodes some formats
+    /// whole.
+    ///
+    /// `create` makes a sink for each map that the options ask for. Both may be called again if a GPU fails and the
+    /// job moves to the CPU; no row of the failed try is kept.
+    ///
+    /// # Errors
+    /// What opening, reading, creating and writing report; [`crate::Error::Cancelled`] when `monitor` says so;
+    /// [`crate::Error::Parameter`] if `create` makes other sinks than the options ask for.
+    pub fn bake_rows(
+        &self,
+        open: &dyn Fn() -> Result<HeightRows>,
+        create: &dyn Fn(Size) -> Result<Maps<RowsOut>>,
+        options: &BakeOptions,
+        monitor: &Monitor,
+    ) -> Result<Baked> {
+        let (ran, (height_type, scale)) = self.run(|backend| {
+            let source = open()?;
+            let plan = BakePlan::new(options, source.size(), source.height_type())?;
+            let sinks = create(plan.size)?;
+            if sinks.normal.is_some() != plan.normal.is_some() || sinks.parallax.is_some() != plan.parallax.is_some() {
+                return Err(Error::parameter("maps", "other sinks", "a sink for each map that the options ask for"));
+            }
+            let sinks = sinks.into_vec();
+            let all_take_it_last = sinks.iter().all(|sink| sink.takes_first_row_last());
+            let order = match (plan.edges.y, plan.size.height()) {
+                (Edge::Wrap, height) if height > 1 && all_take_it_last => RowOrder::FirstRowLast,
+                _ => RowOrder::FromTop,
+            };
+            let formats: Vec<TexelFormat> = plan.outputs().collect();
+            write_watched(sinks, &formats, plan.size, order, monitor, |sinks| {
+                stream(backend, &plan, source, order, monitor, sinks)
+            })?;
+            Ok((plan.size, (plan.height_type, plan.scale)))
+        })?;
+        Ok(Baked { ran, height_type, scale })
+    }
+}
+
+/// Sends the rows of a source through a backend into sinks.
+fn stream(
+    backend: &dyn Backend,
+    plan: &BakePlan,
+    mut source: HeightRows,
+    order: RowOrder,
+    monitor: &Monitor,
+    sinks: &mut [&mut dyn CodeSink],
+) -> Result<()> {
+    let band_rows = backend.band_rows(RowBytes::of_bake(plan));
+    let needs_last_row_first = plan.edges.y == Edge::Wrap && order == RowOrder::FromTop;
+    let is_far = needs_last_row_first && !source.last_row_is_near();
+    if is_far && plan.size.texels() * plan.height_type.bytes() <= HELD_BYTES {
+        let map = read_map_watched(source.as_mut(), monitor)?;
+        return backend.bake(plan, &mut MapBands::new(&map, plan.edges.y, band_rows), sinks);
+    }
+    backend.bake(plan, &mut BandReader::new(source, plan.edges.y, order, band_rows)?, sinks)
+}

@@ -1,0 +1,105 @@
+//! Two normal maps into one.
+
+use super::write::{whole_sink, write_watched};
+use super::{Baker, Ran, check_same_size};
+use crate::backend::RowBytes;
+use crate::error::{Error, Result};
+use crate::exact::Weights;
+use crate::map::{HeightMap, NormalMap, Size};
+use crate::ops::blend::{BlendInputs, BlendMethod, BlendOptions, BlendPlan};
+use crate::stream::{
+    HeightRows, LayerReader, LayerSource, MapLayers, MaskLayer, Monitor, NormalLayer, NormalRows, RowOrder, RowsOut,
+    Tiled, check_components, mask_codes, read_normals,
+};
+
+/// How a blend ran.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Blended {
+    /// Where it ran.
+    pub ran: Ran,
+    /// The weights that were used, and whether they are those that were asked for; `None` for methods without weights.
+    pub weights: Option<Weights>,
+}
+
+impl Baker {
+    /// Blends two normal maps.
+    ///
+    /// A z at or below zero counts as the least above zero that the encoding has, so that every texel has a slope; a
+    /// sum of vectors that is zero becomes (0, 0, 1).
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] if an option is out of range, the sizes differ without [`BlendOptions::tile`], or
+    /// a mask is missing or not wanted; [`crate::Error::NoDirection`] for a float normal that is none;
+    /// [`crate::Error::Device`] if a GPU without a fallback fails.
+    pub fn blend(&self, inputs: &BlendInputs<&NormalMap, &HeightMap>, options: &BlendOptions) -> Result<NormalMap> {
+        let BlendInputs { base, detail, mask } = *inputs;
+        let size = base.size();
+        let formats = [base.format(), detail.format()];
+        let plan = BlendPlan::new(options, size, formats, mask.map(HeightMap::height_type))?;
+        for map in [base, detail] {
+            check_components(map.codes(), map.format(), map.size().width(), 0)?;
+        }
+        check_layer_sizes(size, detail.size(), mask.map(HeightMap::size), options)?;
+        let tiled = if detail.size() == size { None } else { Some(tiled(detail.clone(), size)?) };
+        let mask = mask.map(mask_codes);
+        let mut layers = vec![base.codes(), tiled.as_ref().unwrap_or(detail).codes()];
+        layers.extend(mask.as_ref().map(|mask| mask.as_ref()));
+        let mut map = NormalMap::zeroed(size, options.format);
+        self.run(|backend| {
+            let band_rows = backend.map_band_rows(RowBytes::of_blend(&plan));
+            let mut bands = MapLayers::new(layers.clone(), size.height(), band_rows);
+            backend.blend(&plan, &mut bands, &mut whole_sink(&mut map.codes_mut(), plan.format.texel(), size))?;
+            Ok((size, ()))
+        })?;
+        Ok(map)
+    }
+
+    /// Blends rows from `open` into rows for `create` while they are read and written; a map that tiles is held.
+    ///
+    /// # Errors
+    /// As [`Baker::blend`]; what opening, reading, creating and writing report; [`crate::Error::Cancelled`].
+    pub fn blend_rows(
+        &self,
+        open: &dyn Fn() -> Result<BlendInputs<NormalRows, HeightRows>>,
+        create: &dyn Fn(Size) -> Result<RowsOut>,
+        options: &BlendOptions,
+        monitor: &Monitor,
+    ) -> Result<Blended> {
+        let (ran, weights) = self.run(|backend| {
+            let BlendInputs { base, mut detail, mask } = open()?;
+            let size = base.size();
+            let mask_type = mask.as_ref().map(|mask| mask.height_type());
+            let plan = BlendPlan::new(options, size, [base.format(), detail.format()], mask_type)?;
+            check_layer_sizes(size, detail.size(), mask.as_ref().map(|mask| mask.size()), options)?;
+            if detail.size() != size {
+                detail = Box::new(Tiled::new(read_normals(detail.as_mut())?, size));
+            }
+            let sinks = vec![create(size)?];
+            let mut layers: Vec<Box<dyn LayerSource>> =
+                vec![Box::new(NormalLayer::new(base)), Box::new(NormalLayer::new(detail))];
+            if let Some(mask) = mask {
+                layers.push(Box::new(MaskLayer::new(mask)));
+            }
+            let band_rows = backend.band_rows(RowBytes::of_blend(&plan));
+            write_watched(sinks, &[plan.format.texel()], size, RowOrder::FromTop, monitor, |sinks| {
+                backend.blend(&plan, &mut LayerReader::new(layers, size.height(), band_rows)?, sinks[0])
+            })?;
+            let is_weighted = matches!(plan.method, BlendMethod::Weighted { .. });
+            Ok((size, is_weighted.then_some(plan.weights)))
+        })?;
+        Ok(Blended { ran, weights })
+    }
+}
+
+/// A normal map repeated, or cut, to `size`.
+fn tiled(map: NormalMap, size: Size) -> Result<NormalMap> {
+    read_normals(&mut Tiled::new(map, size))
+}
+
+fn check_layer_sizes(base: Size, detail: Size, mask: Option<Size>, options: &BlendOptions) -> Result<()> {
+    if detail != base && !options.tile {
+        let range = format!("{base}, as the first map's; to repeat a smaller one over the first, tile it (--tile)");
+        return Err(Error::parameter("size of the second map", detail, range));
+    }
+    mask.map_or(Ok(()), |mask| check_same_size("size of the mask", mask, base))
+}

@@ -1,0 +1,68 @@
+//! Heights and the normals of another map into parallax maps.
+
+use super::write::{whole_sink, write_watched};
+use super::{Baker, Ran, check_same_size};
+use crate::backend::RowBytes;
+use crate::error::Result;
+use crate::map::{HeightMap, NormalMap, ParallaxFormat, ParallaxMap, Size};
+use crate::ops::Precision;
+use crate::ops::parallax::ParallaxPlan;
+use crate::stream::{
+    HeightLayer, HeightRows, LayerReader, LayerSource, MapLayers, Monitor, NormalLayer, NormalRows, RowOrder, RowsOut,
+    check_components, height_codes,
+};
+
+impl Baker {
+    /// Bakes a parallax map from heights and the normals of a map that is there already.
+    ///
+    /// # Errors
+    /// As [`Baker::normal`]; [`crate::Error::Parameter`] if the maps differ in size; [`crate::Error::NoDirection`] for
+    /// a float normal that is none.
+    pub fn parallax_with_normals(
+        &self,
+        heights: &HeightMap,
+        normals: &NormalMap,
+        format: ParallaxFormat,
+        precision: Precision,
+    ) -> Result<ParallaxMap> {
+        let plan = ParallaxPlan::new(heights.size(), heights.height_type(), normals.format(), format, precision)?;
+        check_same_size("size of the normal map", normals.size(), plan.size)?;
+        check_components(normals.codes(), normals.format(), plan.size.width(), 0)?;
+        let mut map = ParallaxMap::zeroed(plan.size, format);
+        self.run(|backend| {
+            let band_rows = backend.map_band_rows(RowBytes::of_parallax(&plan));
+            let layers = vec![height_codes(heights.heights()), normals.codes()];
+            let mut bands = MapLayers::new(layers, plan.size.height(), band_rows);
+            backend.parallax(&plan, &mut bands, &mut whole_sink(&mut map.codes_mut(), format.texel(), plan.size))?;
+            Ok((plan.size, ()))
+        })?;
+        Ok(map)
+    }
+
+    /// The same from rows to rows, in memory that does not grow with the maps.
+    ///
+    /// # Errors
+    /// As [`Baker::bake_rows`] and [`Baker::parallax_with_normals`].
+    pub fn parallax_with_normals_rows(
+        &self,
+        open: &dyn Fn() -> Result<(HeightRows, NormalRows)>,
+        create: &dyn Fn(Size) -> Result<RowsOut>,
+        (format, precision): (ParallaxFormat, Precision),
+        monitor: &Monitor,
+    ) -> Result<Ran> {
+        let (ran, ()) = self.run(|backend| {
+            let (heights, normals) = open()?;
+            let plan = ParallaxPlan::new(heights.size(), heights.height_type(), normals.format(), format, precision)?;
+            check_same_size("size of the normal map", normals.size(), plan.size)?;
+            let sinks = vec![create(plan.size)?];
+            let band_rows = backend.band_rows(RowBytes::of_parallax(&plan));
+            let layers: Vec<Box<dyn LayerSource>> =
+                vec![Box::new(HeightLayer(heights)), Box::new(NormalLayer::new(normals))];
+            write_watched(sinks, &[format.texel()], plan.size, RowOrder::FromTop, monitor, |sinks| {
+                backend.parallax(&plan, &mut LayerReader::new(layers, plan.size.height(), band_rows)?, sinks[0])
+            })?;
+            Ok((plan.size, ()))
+        })?;
+        Ok(ran)
+    }
+}
