@@ -2,7 +2,7 @@
 
 use super::damage::{damaged, truncated};
 use super::samples::{DecodedWhole, Layout, Opened, Samples};
-use super::{ReadOptions, limits, srgb};
+use super::{limits, srgb};
 use crate::error::{Error, Result};
 use crate::map::HeightType;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
@@ -11,12 +11,12 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Seek};
 use std::path::Path;
 
 /// Opens and decodes a file.
-pub(super) fn open(path: &Path, format: ImageFormat, options: &ReadOptions) -> Result<Opened> {
+pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<Opened> {
     let file = File::open(path).map_err(Error::io(path))?;
     // The decoders of these two hold the stored bytes, and read them before anything else can be asked.
     let is_held = matches!(format, ImageFormat::Jpeg | ImageFormat::WebP);
     let held = if is_held { file.metadata().map_err(Error::io(path))?.len() } else { 0 };
-    limits::check_stored(path, held, options.max_bytes)?;
+    limits::check_stored(path, held, max_bytes)?;
     let mut file = BufReader::new(file);
     if format == ImageFormat::Jpeg && !jpeg_has_end(&mut file).map_err(Error::io(path))? {
         // The decoder would fill what is missing with grey.
@@ -25,13 +25,13 @@ pub(super) fn open(path: &Path, format: ImageFormat, options: &ReadOptions) -> R
     file.rewind().map_err(Error::io(path))?;
     let mut reader = ImageReader::with_format(file, format);
     let mut decoder_limits = Limits::no_limits();
-    decoder_limits.max_alloc = Some(options.max_bytes);
+    decoder_limits.max_alloc = Some(max_bytes);
     reader.limits(decoder_limits);
     let mut decoder = reader.into_decoder().map_err(reason(path))?;
 
     let (width, height) = decoder.dimensions();
     let size = limits::size(path, width.into(), height.into())?;
-    limits::check(path, size, u128::from(held) + u128::from(decoder.total_bytes()), options.max_bytes)?;
+    limits::check(path, size, u128::from(held) + u128::from(decoder.total_bytes()), max_bytes)?;
     let (colours, alpha) = match decoder.color_type() {
         ColorType::L8 => (1, false),
         ColorType::La8 => (1, true),
@@ -50,7 +50,8 @@ pub(super) fn open(path: &Path, format: ImageFormat, options: &ReadOptions) -> R
     }
     decoder.read_image(&mut samples).map_err(reason(path))?;
     let whole = DecodedWhole::new(layout, Samples::U8(samples));
-    Ok(Opened { says_srgb: srgb::is_named_by(&profile), ..Opened::new(whole) })
+    let lossy = format == ImageFormat::Jpeg;
+    Ok(Opened { says_srgb: srgb::is_named_by(&profile), lossy, ..Opened::new(whole) })
 }
 
 /// Whether an end-of-image marker follows the last start-of-scan marker; coded data holds neither (ITU T.81, B.1.1.5).
