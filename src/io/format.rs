@@ -1,7 +1,7 @@
 //! File formats: by their first bytes, and by their extension.
 
 use crate::error::{Error, Result};
-use crate::map::{Depth, Encoding};
+use crate::map::{Depth, Encoding, ParallaxFormat};
 use image::ImageFormat;
 use std::fs::File;
 use std::io::Read;
@@ -86,6 +86,20 @@ pub fn default_format(path: &Path) -> Result<(Encoding, Depth)> {
         OutputFormat::Tiff => (Encoding::Unorm, Depth::Bits16),
         OutputFormat::Exr => (Encoding::Float, Depth::Float32),
     })
+}
+
+/// The format of a parallax map that the extension of an output suggests: 8-bit biased for PNG, which has no signed
+/// numbers, 8-bit snorm for TIFF, 32-bit float for EXR.
+///
+/// # Errors
+/// [`Error::File`] lists the known extensions if this is none of them.
+pub fn default_parallax_format(path: &Path) -> Result<ParallaxFormat> {
+    let (encoding, depth) = match OutputFormat::of(path)? {
+        OutputFormat::Png => (Encoding::Biased, Depth::Bits8),
+        OutputFormat::Tiff => (Encoding::Snorm, Depth::Bits8),
+        OutputFormat::Exr => (Encoding::Float, Depth::Float32),
+    };
+    Ok(ParallaxFormat { encoding, depth })
 }
 
 fn extension(path: &Path) -> String {

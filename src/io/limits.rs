@@ -1,7 +1,7 @@
 //! Sizes that a header claims, checked before anything is allocated for them.
 
 use crate::error::{Error, Result};
-use crate::map::{HeightType, Size};
+use crate::map::Size;
 use std::path::Path;
 
 /// The size that a header claims.
@@ -37,8 +37,8 @@ pub(super) fn check_stored(path: &Path, stored: u64, limit: u64) -> Result<()> {
 }
 
 /// Fails if the whole map does not fit the limit.
-pub(super) fn check_map(path: &Path, size: Size, height_type: HeightType, limit: u64) -> Result<()> {
-    check(path, size, size.texels() as u128 * height_type.bytes() as u128, limit)
+pub(super) fn check_map(path: &Path, size: Size, texel_bytes: usize, limit: u64) -> Result<()> {
+    check(path, size, size.texels() as u128 * texel_bytes as u128, limit)
 }
 
 /// Fails if `claimed` bytes cannot come out of a file of `stored` bytes of deflate data.

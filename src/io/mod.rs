@@ -1,7 +1,8 @@
-//! Height maps in, normal maps out.
+//! Height maps and normal maps in, normal maps and parallax maps out.
 //!
 //! A file's rows pass three steps, one module each: a decoder gives interleaved samples (`samples`), `channel`
-//! picks the height of each texel, and `srgb` undoes a wrong colour space where that was asked for. Decoders hold a
+//! picks the height of each texel or `normal` its components, and `srgb` undoes a wrong colour space of heights where
+//! that was asked for. Decoders hold a
 //! row, a strip or a block at a time where the format allows it. Writers go through `replace`, so that a name never
 //! stands for half a file.
 
@@ -11,6 +12,7 @@ mod exr;
 mod format;
 mod groups;
 mod limits;
+mod normal;
 mod png;
 mod raster;
 mod raw;
@@ -21,14 +23,18 @@ mod srgb;
 mod tiff;
 
 pub use channel::Channel;
-pub use format::{INPUT_EXTENSIONS, default_format};
+pub use format::{INPUT_EXTENSIONS, default_format, default_parallax_format};
 pub use raw::{RawKind, RawLayout};
 
 use crate::error::Result;
-use crate::map::{HeightMap, NormalFormat, NormalMap, Size, TexelFormat};
-use crate::stream::{RowSink, RowSource, read_map};
+use crate::map::{
+    Channels, Convention, Encoding, HeightMap, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Size, TexelFormat,
+};
+use crate::stream::{NormalSource, RowSource, RowsOut, read_map, read_normals};
 use channel::HeightRows;
 use format::{FileFormat, OutputFormat};
+use normal::NormalRows;
+use samples::Opened;
 use std::path::Path;
 
 /// How a file becomes a height map.
@@ -62,9 +68,41 @@ pub struct HeightFile {
     pub warnings: Vec<String>,
 }
 
+/// How a file becomes a normal map.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NormalReadOptions {
+    /// What the codes mean; `None`: unorm for unsigned integers, snorm for signed ones, float for floats.
+    pub encoding: Option<Encoding>,
+    /// Which components there are; `None`: all three if the file has three channels. xy takes the first two.
+    pub channels: Option<Channels>,
+    /// Which way green points.
+    pub convention: Convention,
+    /// The most bytes that decoding one file may hold in memory at once, checked from its header and its length.
+    pub max_bytes: u64,
+}
+
+/// An open normal map file, and what the user should know about it.
+pub struct NormalFile {
+    /// The rows.
+    pub rows: Box<dyn NormalSource>,
+    /// What looks wrong in the file, in words.
+    pub warnings: Vec<String>,
+    /// Whether the file says that its codes are sRGB colours, which normals never are.
+    pub says_srgb: bool,
+}
+
+/// The most bytes that decoding one file may hold, unless something else is asked for.
+const MAX_BYTES: u64 = 4 << 30;
+
 impl Default for ReadOptions {
     fn default() -> Self {
-        Self { channel: None, color_space: ColorSpace::Linear, raw: None, max_bytes: 4 << 30 }
+        Self { channel: None, color_space: ColorSpace::Linear, raw: None, max_bytes: MAX_BYTES }
+    }
+}
+
+impl Default for NormalReadOptions {
+    fn default() -> Self {
+        Self { encoding: None, channels: None, convention: Convention::Gl, max_bytes: MAX_BYTES }
     }
 }
 
@@ -85,15 +123,53 @@ impl Default for ReadOptions {
 pub fn open_heights(path: &Path, options: &ReadOptions) -> Result<HeightFile> {
     let opened = match options.raw {
         Some(layout) => raw::open(path, layout)?,
-        None => match FileFormat::of_file(path)? {
-            FileFormat::Png => png::open(path, options)?,
-            FileFormat::Tiff => tiff::open(path, options)?,
-            FileFormat::Exr => exr::open(path, options)?,
-            FileFormat::Raster(format) => raster::open(path, format, options)?,
-        },
+        None => open_samples(path, exr::Wanted::Heights(options.channel.as_ref()), options.max_bytes)?,
     };
     let (rows, warnings) = HeightRows::new(path, opened, options)?;
     Ok(HeightFile { rows: Box::new(rows), warnings })
+}
+
+/// Opens a normal map file: PNG, TIFF, EXR, TGA, BMP, JPEG or WebP, found out and read as [`open_heights`] does.
+///
+/// Codes keep the file's depth: 8 or 16 bits, or 32-bit floats, which half floats become exactly and double floats
+/// rounded. What they mean is in few files, so [`NormalReadOptions`] say it; without a word:
+///
+/// | the file holds | encoding | may be read as |
+/// | --- | --- | --- |
+/// | unsigned integers: PNG, TGA, BMP, JPEG, WebP, most TIFF | unorm | unorm, biased |
+/// | signed integers: TIFF | snorm | snorm |
+/// | floats: TIFF, EXR | float | float |
+///
+/// | channels | components | may be read as |
+/// | --- | --- | --- |
+/// | three or more, alpha aside | x, y, z: the first three | xyz, xy |
+/// | two | x, y | xy |
+/// | one and alpha | refused | xy |
+/// | one | refused: a height map? | |
+///
+/// An EXR says by the names of its channels which they are: X, Y, Z or else R, G, B, in any case, or the first two of
+/// them, in its first layer that has them; below a common prefix (`normal.X`) if it is the only one.
+///
+/// Floats are given as they are, NaN too: [`crate::Baker::blend`] refuses what is no direction.
+///
+/// # Errors
+/// [`crate::Error::Parameter`] if the file's samples cannot have the encoding; [`crate::Error::File`] if its channels
+/// are none of a normal map's; else as [`open_heights`].
+pub fn open_normals(path: &Path, options: &NormalReadOptions) -> Result<NormalFile> {
+    let opened = open_samples(path, exr::Wanted::Normals(options.channels), options.max_bytes)?;
+    let says_srgb = opened.says_srgb;
+    let (rows, warnings) = NormalRows::new(path, opened, options)?;
+    Ok(NormalFile { rows: Box::new(rows), warnings, says_srgb })
+}
+
+/// Opens a file that says what it is.
+fn open_samples(path: &Path, wanted: exr::Wanted<'_>, max_bytes: u64) -> Result<Opened> {
+    match FileFormat::of_file(path)? {
+        FileFormat::Png => png::open(path, max_bytes),
+        FileFormat::Tiff => tiff::open(path, max_bytes),
+        FileFormat::Exr => exr::open(path, wanted, max_bytes),
+        FileFormat::Raster(format) => raster::open(path, format, max_bytes),
+    }
 }
 
 /// Creates a normal map file; nothing stands under `path` until its rows are complete.
@@ -109,11 +185,27 @@ pub fn open_heights(path: &Path, options: &ReadOptions) -> Result<HeightFile> {
 /// # Errors
 /// [`crate::Error::Parameter`] if the format cannot hold `format`; [`crate::Error::File`] for an unknown extension or
 /// a name that cannot be replaced; [`crate::Error::Io`].
-pub fn create_normals(path: &Path, size: Size, format: NormalFormat) -> Result<Box<dyn RowSink>> {
+pub fn create_normals(path: &Path, size: Size, format: NormalFormat) -> Result<RowsOut> {
     create_codes(path, size, format.texel())
 }
 
-fn create_codes(path: &Path, size: Size, format: TexelFormat) -> Result<Box<dyn RowSink>> {
+/// Creates a parallax map file; nothing stands under `path` until its rows are complete.
+///
+/// The extension picks the format:
+///
+/// | extension | encoding and depth | as |
+/// | --- | --- | --- |
+/// | `png` | biased, unorm: 8, 16 | grey |
+/// | `tif`, `tiff` | snorm, biased, unorm: 8, 16; float: 32f | one sample |
+/// | `exr` | float: 16f, 32f | the channel Y |
+///
+/// # Errors
+/// As [`create_normals`].
+pub fn create_parallax(path: &Path, size: Size, format: ParallaxFormat) -> Result<RowsOut> {
+    create_codes(path, size, format.texel())
+}
+
+fn create_codes(path: &Path, size: Size, format: TexelFormat) -> Result<RowsOut> {
     format.check()?;
     match OutputFormat::of(path)? {
         OutputFormat::Png => png::create(path, size, format),
@@ -139,18 +231,50 @@ impl HeightMap {
     pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<(Self, Vec<String>)> {
         let path = path.as_ref();
         let HeightFile { mut rows, warnings } = open_heights(path, options)?;
-        limits::check_map(path, rows.size(), rows.height_type(), options.max_bytes)?;
+        limits::check_map(path, rows.size(), rows.height_type().bytes(), options.max_bytes)?;
         Ok((read_map(rows.as_mut())?, warnings))
     }
 }
 
 impl NormalMap {
+    /// Reads a normal map file with the default [`NormalReadOptions`]; warnings are dropped.
+    ///
+    /// # Errors
+    /// As [`NormalMap::read_with`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        Self::read_with(path, &NormalReadOptions::default()).map(|(map, _)| map)
+    }
+
+    /// Reads a normal map file, and says in words what looks wrong in it.
+    ///
+    /// # Errors
+    /// As [`open_normals`], and what its rows report; [`crate::Error::TooLarge`] if the whole map is larger than
+    /// [`NormalReadOptions::max_bytes`].
+    pub fn read_with(path: impl AsRef<Path>, options: &NormalReadOptions) -> Result<(Self, Vec<String>)> {
+        let path = path.as_ref();
+        let NormalFile { mut rows, warnings, .. } = open_normals(path, options)?;
+        limits::check_map(path, rows.size(), rows.format().texel().bytes(), options.max_bytes)?;
+        Ok((read_normals(rows.as_mut())?, warnings))
+    }
+
     /// Writes a normal map file in the map's own format; the extension must be able to hold it.
     ///
     /// # Errors
     /// As [`create_normals`], and what writing meets.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<()> {
         let mut sink = create_normals(path.as_ref(), self.size(), self.format())?;
+        sink.write(0, self.codes())?;
+        sink.finish()
+    }
+}
+
+impl ParallaxMap {
+    /// Writes a parallax map file in the map's own format; the extension must be able to hold it.
+    ///
+    /// # Errors
+    /// As [`create_parallax`], and what writing meets.
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<()> {
+        let mut sink = create_parallax(path.as_ref(), self.size(), self.format())?;
         sink.write(0, self.codes())?;
         sink.finish()
     }

@@ -2,36 +2,41 @@
 
 use super::damage::{damaged, truncated};
 use super::samples::{DecodedWhole, Layout, Opened, Samples};
-use super::{ReadOptions, limits, srgb};
+use super::{limits, srgb};
 use crate::error::{Error, Result};
 use crate::map::HeightType;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, ErrorKind, Seek};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::path::Path;
 
 /// Opens and decodes a file.
-pub(super) fn open(path: &Path, format: ImageFormat, options: &ReadOptions) -> Result<Opened> {
+pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<Opened> {
     let file = File::open(path).map_err(Error::io(path))?;
     // The decoders of these two hold the stored bytes, and read them before anything else can be asked.
     let is_held = matches!(format, ImageFormat::Jpeg | ImageFormat::WebP);
     let held = if is_held { file.metadata().map_err(Error::io(path))?.len() } else { 0 };
-    limits::check_stored(path, held, options.max_bytes)?;
+    limits::check_stored(path, held, max_bytes)?;
     let mut file = BufReader::new(file);
     if format == ImageFormat::Jpeg && !jpeg_has_end(&mut file).map_err(Error::io(path))? {
         // The decoder would fill what is missing with grey.
         return Err(truncated(path));
     }
+    let lossy = match format {
+        ImageFormat::Jpeg => true,
+        ImageFormat::WebP => webp_is_lossy(&mut file).map_err(Error::io(path))?,
+        _ => false,
+    };
     file.rewind().map_err(Error::io(path))?;
     let mut reader = ImageReader::with_format(file, format);
     let mut decoder_limits = Limits::no_limits();
-    decoder_limits.max_alloc = Some(options.max_bytes);
+    decoder_limits.max_alloc = Some(max_bytes);
     reader.limits(decoder_limits);
     let mut decoder = reader.into_decoder().map_err(reason(path))?;
 
     let (width, height) = decoder.dimensions();
     let size = limits::size(path, width.into(), height.into())?;
-    limits::check(path, size, u128::from(held) + u128::from(decoder.total_bytes()), options.max_bytes)?;
+    limits::check(path, size, u128::from(held) + u128::from(decoder.total_bytes()), max_bytes)?;
     let (colours, alpha) = match decoder.color_type() {
         ColorType::L8 => (1, false),
         ColorType::La8 => (1, true),
@@ -50,7 +55,7 @@ pub(super) fn open(path: &Path, format: ImageFormat, options: &ReadOptions) -> R
     }
     decoder.read_image(&mut samples).map_err(reason(path))?;
     let whole = DecodedWhole::new(layout, Samples::U8(samples));
-    Ok(Opened { says_srgb: srgb::is_named_by(&profile), ..Opened::new(whole) })
+    Ok(Opened { says_srgb: srgb::is_named_by(&profile), lossy, ..Opened::new(whole) })
 }
 
 /// Whether an end-of-image marker follows the last start-of-scan marker; coded data holds neither (ITU T.81, B.1.1.5).
@@ -71,6 +76,28 @@ fn jpeg_has_end(file: &mut impl BufRead) -> io::Result<bool> {
             return Ok(has_end);
         }
         file.consume(count);
+    }
+}
+
+/// Whether the first coded picture of a WebP is in a `VP8 ` chunk; lossless ones are in `VP8L` (RFC 9649, section 2).
+fn webp_is_lossy(file: &mut BufReader<File>) -> io::Result<bool> {
+    // Behind "RIFF", the file's length and "WEBP": four letters, a length, as many bytes, and one more if it is odd.
+    let mut header = [0; 8];
+    file.seek(SeekFrom::Start(12))?;
+    loop {
+        match file.read_exact(&mut header) {
+            Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Ok(false),
+            read => read?,
+        }
+        let [letters @ .., a, b, c, d] = header;
+        match &letters {
+            b"VP8 " => return Ok(true),
+            b"VP8L" => return Ok(false),
+            _ => {
+                let length = i64::from(u32::from_le_bytes([a, b, c, d]));
+                file.seek_relative(length + length % 2)?;
+            }
+        }
     }
 }
 

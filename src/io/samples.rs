@@ -37,6 +37,10 @@ pub(super) struct Opened {
     pub samples: Box<dyn SampleRows>,
     /// The channel of a file that names its channels was found while it was opened.
     pub channel_found: bool,
+    /// Whether its integers are signed: a sample v stands as v + 2^(b-1).
+    pub signed: bool,
+    /// Whether its compression changes samples.
+    pub lossy: bool,
     /// What stands for "no data".
     pub no_data: Option<NoData>,
     /// Whether the file says that its codes are sRGB.
@@ -87,7 +91,15 @@ impl Opened {
     /// A file with nothing special about it.
     pub fn new(samples: impl SampleRows + 'static) -> Self {
         let samples = Box::new(samples);
-        Self { samples, channel_found: false, no_data: None, says_srgb: false, warnings: Vec::new() }
+        Self {
+            samples,
+            channel_found: false,
+            signed: false,
+            lossy: false,
+            no_data: None,
+            says_srgb: false,
+            warnings: Vec::new(),
+        }
     }
 }
 

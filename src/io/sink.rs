@@ -1,4 +1,4 @@
-//! A normal map file that is written row by row.
+//! A file of codes that is written row by row.
 
 use super::replace::Replacement;
 use crate::error::{Error, Result};

@@ -1,18 +1,17 @@
-//! EXR height maps.
+//! EXR height and normal maps, read.
 
+use super::choose::{Wanted, choose};
 use crate::error::{Error, Result};
-use crate::io::channel::Channel;
 use crate::io::damage::{damaged, truncated};
 use crate::io::groups::{GroupDecoder, GroupedRows};
+use crate::io::limits;
 use crate::io::samples::{Layout, Opened, Samples};
-use crate::io::{ReadOptions, limits};
 use crate::map::HeightType;
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{Chunk, CompressedBlock};
 use exr::compression::Compression;
 use exr::math::Vec2;
 use exr::meta::attribute::{ChannelDescription, SampleType};
-use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use half::f16;
 use std::fs::File;
@@ -47,13 +46,13 @@ struct BlockChannel {
 }
 
 /// Opens an EXR: half and float channels, of scan lines or tiles, of every compression that the decoder knows.
-pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
+pub(crate) fn open(path: &Path, wanted: Wanted<'_>, max_bytes: u64) -> Result<Opened> {
     let file = File::open(path).map_err(Error::io(path))?;
     let file_bytes = file.metadata().map_err(Error::io(path))?.len();
     let mut file = BufReader::new(file);
     let meta = MetaData::read_from_buffered(&mut file, false).map_err(reason(path))?;
     let tables = file.stream_position().map_err(Error::io(path))?;
-    let (layer, wanted) = choose(path, &meta.headers, options.channel.as_ref())?;
+    let (layer, wanted) = choose(path, &meta.headers, wanted)?;
     let header = &meta.headers[layer];
 
     // Everything that the header claims is checked before the decoder allocates for it, tile sizes too.
@@ -71,7 +70,7 @@ pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
     let rows_held = block_rows.min(height);
     let block_bytes = block_width as u128 * block_rows as u128 * texel_bytes as u128;
     let held_bytes = width as u128 * rows_held as u128 * wanted.len() as u128 * 4;
-    limits::check(path, size, block_bytes + held_bytes, options.max_bytes)?;
+    limits::check(path, size, block_bytes + held_bytes, max_bytes)?;
 
     let skipped: u128 = meta.headers[..layer].iter().map(|header| header.chunk_count as u128 * 8).sum();
     let table_bytes = across as u128 * down as u128 * 8;
@@ -118,52 +117,6 @@ fn block_channel(path: &Path, channels: &[ChannelDescription], index: usize) -> 
     Ok(BlockChannel { before, half: channels[index].sample_type == SampleType::F16 })
 }
 
-/// Names that say "height", in lower case.
-const HEIGHT_NAMES: [&str; 8] = ["y", "z", "height", "h", "displacement", "disp", "depth", "bump"];
-
-/// The layer, and the channels in it, that hold the heights: one channel, or red, green and blue.
-fn choose(path: &Path, layers: &[Header], channel: Option<&Channel>) -> Result<(usize, Vec<usize>)> {
-    for (index, layer) in layers.iter().enumerate() {
-        let names: Vec<String> = layer.channels.list.iter().map(|channel| channel.name.to_string()).collect();
-        if let Some(channels) = choose_in_layer(&names, channel) {
-            return Ok((index, channels));
-        }
-    }
-    let names: Vec<String> =
-        layers.iter().flat_map(|layer| &layer.channels.list).map(|channel| channel.name.to_string()).collect();
-    let names = names.join(", ");
-    let reason = match channel {
-        None => format!("it is not clear which of its channels holds the heights: {names}"),
-        Some(channel) => format!("it has no channel {channel}, only {names}"),
-    };
-    Err(Error::file(path, reason, "choose one by its name with --channel"))
-}
-
-/// The channels that hold the heights, if the names are clear.
-fn choose_in_layer(names: &[String], channel: Option<&Channel>) -> Option<Vec<usize>> {
-    let named = |name: &str| names.iter().position(|candidate| candidate == name);
-    let is_alpha = |name: &str| name == "A" || name.ends_with(".A");
-    let colours: Vec<usize> = (0..names.len()).filter(|index| !is_alpha(&names[*index])).collect();
-    let rgb = || Some(vec![named("R")?, named("G")?, named("B")?]);
-    let only = || (colours.len() == 1).then(|| colours.clone());
-    let one = |name: &str| named(name).map(|index| vec![index]);
-    match channel {
-        Some(Channel::Named(name)) => one(name),
-        Some(Channel::A) => one("A"),
-        Some(Channel::R) => one("R").or_else(only),
-        Some(Channel::G) => one("G").or_else(only),
-        Some(Channel::B) => one("B").or_else(only),
-        Some(Channel::Luma) => rgb().or_else(only),
-        None => only().or_else(|| rgb().filter(|_| colours.len() == 3)).or_else(|| {
-            let last_part = |name: &str| name.rsplit('.').next().unwrap_or(name).to_ascii_lowercase();
-            let says_height = |index: &&usize| HEIGHT_NAMES.contains(&last_part(&names[**index]).as_str());
-            let heights: Vec<usize> = colours.iter().filter(says_height).copied().collect();
-            // Beside colours, Z and Y are not the heights of a texture but the depths of a picture.
-            (heights.len() == 1 && rgb().is_none()).then_some(heights)
-        }),
-    }
-}
-
 impl ExrBlocks {
     /// Reads a block of `raw_bytes` bytes before compression.
     fn read_block(&mut self, offset: u64, raw_bytes: usize) -> Result<UncompressedBlock> {
@@ -200,7 +153,7 @@ impl ExrBlocks {
 
     /// Copies the wanted channels of a block to their place; a block holds, line by line, channel after channel.
     fn put(&self, data: &[u8], left: usize, columns: usize, rows: usize, group: &mut Samples) {
-        let Samples::F32(group) = group else { unreachable!("EXR heights are floats") };
+        let Samples::F32(group) = group else { unreachable!("EXR samples are read as floats") };
         let (per_texel, per_row) = (self.layout.per_texel(), self.layout.per_row());
         for row in 0..rows {
             let line = &data[row * columns * self.texel_bytes..][..columns * self.texel_bytes];

@@ -1,4 +1,4 @@
-//! EXR normal maps: scan lines in ZIP blocks, which is lossless.
+//! EXR normal and parallax maps, written: scan lines in ZIP blocks, which is lossless.
 
 use crate::error::{Error, Result};
 use crate::io::replace::{Output, Replacement};
@@ -39,7 +39,7 @@ struct ExrEncoder {
     offsets: Vec<u64>,
 }
 
-/// Creates an EXR with the channels R, G and B, or R and G, of half or float samples.
+/// Creates an EXR with the channels R, G and B, or R and G, or Y alone, of half or float samples.
 pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box<dyn RowSink>> {
     let sample_type = match format.depth {
         Depth::Float16 => SampleType::F16,
@@ -49,12 +49,13 @@ pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box
         }
     };
     // EXR sorts channels by name.
-    let (names, order): (&[&str], &'static [usize]) = match format.channels {
-        3 => (&["B", "G", "R"], &[2, 1, 0]),
-        _ => (&["G", "R"], &[1, 0]),
+    let (layer, names, order): (_, &[&str], &'static [usize]) = match format.channels {
+        1 => ("parallax", &["Y"], &[0]),
+        2 => ("normals", &["G", "R"], &[1, 0]),
+        _ => ("normals", &["B", "G", "R"], &[2, 1, 0]),
     };
     let channels = names.iter().map(|name| ChannelDescription::new(*name, sample_type, true)).collect();
-    let header = Header::new(Text::from("normals"), (size.width(), size.height()), channels).with_encoding(
+    let header = Header::new(Text::from(layer), (size.width(), size.height()), channels).with_encoding(
         COMPRESSION,
         BlockDescription::ScanLines,
         LineOrder::Increasing,

@@ -1,9 +1,9 @@
-//! PNG height maps.
+//! PNG height and normal maps, read.
 
 use crate::error::{Error, Result};
 use crate::io::damage::{damaged, truncated};
 use crate::io::samples::{DecodedWhole, Layout, Opened, SampleRows, Samples, bytes_mut, len};
-use crate::io::{ReadOptions, limits, srgb};
+use crate::io::{limits, srgb};
 use crate::map::{HeightType, HeightsMut};
 use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Reader, Transformations};
 use std::fs::File;
@@ -28,8 +28,8 @@ struct PngRows {
 /// Opens a PNG: all colour types and bit depths.
 ///
 /// Palettes become RGB, and 1, 2 and 4-bit grey becomes the 8-bit codes of the same heights, times 255 / (2^n - 1).
-pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
-    let (mut reader, layout) = start(path, options.max_bytes)?;
+pub(crate) fn open(path: &Path, max_bytes: u64) -> Result<Opened> {
+    let (mut reader, layout) = start(path, max_bytes)?;
     let info = reader.info();
     let profile_is_srgb = info.icc_profile.as_deref().is_some_and(srgb::is_named_by);
     let says_srgb = info.srgb.is_some() || profile_is_srgb;
@@ -41,7 +41,6 @@ pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
         to_native_order(whole);
         Opened::new(DecodedWhole::new(layout, samples))
     } else {
-        let max_bytes = options.max_bytes;
         Opened::new(PngRows { path: path.into(), max_bytes, reader, layout, next_row: 0 })
     };
     Ok(Opened { says_srgb, ..opened })

@@ -1,4 +1,4 @@
-//! PNG normal maps.
+//! PNG normal and parallax maps, written.
 //!
 //! The first row of a map that wraps can only be baked when the last one is known, and waiting for it would keep
 //! decoding and encoding from overlapping. So the first row is stored, not deflated: its bytes have a known number,
@@ -41,13 +41,17 @@ struct PngEncoder {
     filtered: Vec<u8>,
 }
 
-/// Creates a PNG with 8 or 16 bits, RGB; xy maps leave blue 0, since PNG's only two-channel type means transparency.
+/// Creates a PNG with 8 or 16 bits: grey for one channel, else RGB; xy maps leave blue 0, since PNG's only two-channel
+/// type means transparency.
 pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box<dyn RowSink>> {
     let depth = match (format.encoding, format.depth) {
         (Encoding::Unorm | Encoding::Biased, Depth::Bits8) => BitDepth::Eight,
         (Encoding::Unorm | Encoding::Biased, Depth::Bits16) => BitDepth::Sixteen,
         (Encoding::Snorm, _) => {
-            let remedy = "unorm or biased in PNG, which has no signed numbers; TIFF has them";
+            let remedy = match format.channels {
+                1 => "biased in PNG, which has no signed numbers; TIFF has them",
+                _ => "unorm or biased in PNG, which has no signed numbers; TIFF has them",
+            };
             return Err(cannot_hold(path, format, remedy));
         }
         _ => {
@@ -58,10 +62,14 @@ pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box
     let replacement = Replacement::create(path)?;
     let [width, height] = [size.width(), size.height()].map(|side| side as u32);
     let mut encoder = Encoder::new(replacement.output()?, width, height);
-    encoder.set_color(ColorType::Rgb);
+    let (colour, samples) = match format.channels {
+        1 => (ColorType::Grayscale, 1),
+        _ => (ColorType::Rgb, 3),
+    };
+    encoder.set_color(colour);
     encoder.set_depth(depth);
     let mut writer = encoder.write_header().map_err(reason(path))?;
-    let texel_bytes = 3 * format.depth.bytes();
+    let texel_bytes = samples * format.depth.bytes();
     let row_bytes = size.width() * texel_bytes;
     writer.write_chunk(IDAT, &vec![0; 2 + stored_bytes(1 + row_bytes)]).map_err(reason(path))?;
     let encoder = PngEncoder {
@@ -116,17 +124,17 @@ impl PngEncoder {
     fn samples(&mut self, codes: &[u8]) {
         let texels = self.current.chunks_exact_mut(self.texel_bytes);
         match (self.depth, self.channels) {
-            (Depth::Bits8, 3) => self.current.copy_from_slice(codes),
             (Depth::Bits8, 2) => {
                 texels.zip(codes.chunks_exact(2)).for_each(|(rgb, xy)| rgb.copy_from_slice(&[xy[0], xy[1], 0]));
             }
-            (_, channels) => {
-                let big_endian = |code: &[u8]| u16::from_ne_bytes([code[0], code[1]]).to_be_bytes();
-                for (rgb, codes) in texels.zip(codes.chunks_exact(2 * channels)) {
-                    rgb[4..].fill(0);
-                    let samples = rgb.chunks_exact_mut(2).zip(codes.chunks_exact(2));
-                    samples.for_each(|(sample, code)| sample.copy_from_slice(&big_endian(code)));
-                }
+            (Depth::Bits8, _) => self.current.copy_from_slice(codes),
+            (_, 2) => texels.zip(codes.chunks_exact(4)).for_each(|(rgb, xy)| {
+                let (x, y) = (big_endian(&xy[..2]), big_endian(&xy[2..]));
+                rgb.copy_from_slice(&[x[0], x[1], y[0], y[1], 0, 0]);
+            }),
+            _ => {
+                let samples = self.current.chunks_exact_mut(2).zip(codes.chunks_exact(2));
+                samples.for_each(|(sample, code)| sample.copy_from_slice(&big_endian(code)));
             }
         }
     }
@@ -141,6 +149,11 @@ impl PngEncoder {
         }
         self.stream.write(&self.filtered);
     }
+}
+
+/// A 16-bit code, most significant byte first, as PNG stores it.
+fn big_endian(code: &[u8]) -> [u8; 2] {
+    u16::from_ne_bytes([code[0], code[1]]).to_be_bytes()
 }
 
 /// Each byte less the one a texel to its left.

@@ -1,10 +1,10 @@
-//! TIFF height maps.
+//! TIFF height and normal maps, read.
 
 use crate::error::{Error, Result};
 use crate::io::damage::{damaged, truncated};
 use crate::io::groups::{GroupDecoder, GroupedRows};
 use crate::io::samples::{Layout, NoData, Opened, Samples};
-use crate::io::{ReadOptions, limits, srgb};
+use crate::io::{limits, srgb};
 use crate::map::HeightType;
 use std::fs::File;
 use std::io::{BufReader, ErrorKind};
@@ -44,13 +44,13 @@ impl Grid {
 
 /// Opens a TIFF: 8 and 16-bit integers, signed ones too, and floats of 16, 32 and 64 bits.
 ///
-/// A signed height v has the code v + 2^(b-1): the slopes are the same.
-pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
+/// A signed sample v becomes v + 2^(b-1): of heights, the slopes are the same.
+pub(crate) fn open(path: &Path, max_bytes: u64) -> Result<Opened> {
     let file = File::open(path).map_err(Error::io(path))?;
-    let max_bytes = options.max_bytes.try_into().unwrap_or(usize::MAX);
+    let buffer_bytes = max_bytes.try_into().unwrap_or(usize::MAX);
     let mut decoder_limits = Limits::default();
-    decoder_limits.decoding_buffer_size = max_bytes;
-    decoder_limits.intermediate_buffer_size = max_bytes;
+    decoder_limits.decoding_buffer_size = buffer_bytes;
+    decoder_limits.intermediate_buffer_size = buffer_bytes;
     let decoder = Decoder::new(BufReader::new(file)).map_err(reason(path))?;
     let mut decoder = decoder.with_limits(decoder_limits);
 
@@ -76,11 +76,11 @@ pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
     let sample_type = decoder.image_chunk_buffer_layout(0).map_err(reason(path))?.sample_type;
     let depth = depth(path, sample_type, bits)?;
     let layout = Layout { size, depth, colours, alpha };
-    // The decoder's chunk in the file's own type, beside the group of chunks that becomes heights.
+    // The decoder's chunk in the file's own type, beside the group of chunks that rows are taken from.
     let chunk_samples = grid.chunk_width as u128 * grid.samples_of_chunk(layout) as u128;
     let chunk_bytes = chunk_samples * u128::from(bits.div_ceil(8)) * grid.chunk_rows as u128;
     let group_bytes = layout.row_bytes() as u128 * grid.chunk_rows.min(size.height()) as u128;
-    limits::check(path, size, chunk_bytes + group_bytes, options.max_bytes)?;
+    limits::check(path, size, chunk_bytes + group_bytes, max_bytes)?;
     let no_data = no_data(path, &mut decoder, sample_type)?;
     let profile = decoder.find_tag(Tag::IccProfile).ok().flatten().and_then(|value| value.into_u8_vec().ok());
     let mut warnings = Vec::new();
@@ -88,8 +88,9 @@ pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Opened> {
         warnings.push("its 64-bit floats are rounded to 32 bits".into());
     }
     let chunks = TiffChunks { path: path.into(), decoder, layout, grid };
+    let signed = matches!(sample_type, Some(DecodingSampleType::I8 | DecodingSampleType::I16));
     let says_srgb = profile.is_some_and(|profile| srgb::is_named_by(&profile));
-    Ok(Opened { no_data, says_srgb, warnings, ..Opened::new(GroupedRows::new(chunks)) })
+    Ok(Opened { signed, no_data, says_srgb, warnings, ..Opened::new(GroupedRows::new(chunks)) })
 }
 
 /// Colours or bands of a texel, and whether alpha follows them.
@@ -107,7 +108,7 @@ fn colours(path: &Path, decoder: &mut Decoder<BufReader<File>>) -> Result<(usize
         ColorType::Multiband { num_samples, .. } => Ok((num_samples.into(), false)),
         other => {
             let reason = format!("its colours are {other:?}, not grey or RGB");
-            Err(Error::file(path, reason, "convert it to grey"))
+            Err(Error::file(path, reason, "convert it to grey or RGB"))
         }
     }
 }
@@ -194,7 +195,7 @@ struct Place {
 }
 
 impl Place {
-    /// Copies a decoded chunk to its place as heights; false if it has another size or type than its header says.
+    /// Copies a decoded chunk to its place; false if it has another size or type than its header says.
     fn put_samples(&self, chunk: &DecodingResult, group: &mut Samples) -> bool {
         match (chunk, group) {
             (DecodingResult::U8(from), Samples::U8(to)) => self.put(from, to, |v| v),
@@ -237,7 +238,7 @@ fn reason(path: &Path) -> impl FnOnce(TiffError) -> Error + '_ {
             Error::file(path, "it needs more memory than the limit", "raise it with --max-bytes")
         }
         TiffError::UnsupportedError(error) => {
-            Error::file(path, error, "convert it to 8 or 16-bit grey, or to 32-bit floats")
+            Error::file(path, error, "convert it to 8 or 16-bit grey or RGB, or to 32-bit floats")
         }
         error => damaged(path, error),
     }

@@ -1,4 +1,4 @@
-//! TIFF normal maps, uncompressed and by strips.
+//! TIFF normal and parallax maps, written uncompressed and by strips.
 //!
 //! The container is written here: the `tiff` crate's encoder borrows itself while an image is open, so that it cannot
 //! be fed row by row from outside. Everything follows TIFF 6.0, and the BigTIFF extension beyond 4 GiB.
@@ -24,7 +24,7 @@ struct TiffEncoder {
     big: bool,
 }
 
-/// Creates a TIFF: 8 and 16-bit integers, signed for snorm, and 32-bit floats; xy maps have two samples.
+/// Creates a TIFF: 8 and 16-bit integers, signed for snorm, and 32-bit floats; one sample for each code of a texel.
 pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box<dyn RowSink>> {
     if format.depth == Depth::Float16 {
         return Err(cannot_hold(path, format, "float with 32f bits in TIFF; EXR holds 16f"));
@@ -119,6 +119,7 @@ impl TiffEncoder {
         let bits = 8 * self.format.depth.bytes() as u16;
         // Two samples are no colour: one is "grey" and the other an extra sample without a meaning.
         let (photometric, extra) = match self.format.channels {
+            1 => (1, None),
             3 => (2, None),
             _ => (1, Some((338, Values::Short(vec![0])))),
         };
