@@ -42,12 +42,13 @@ impl LayerReading {
             CodesRef::U16(codes) => reading.component(codes[at + channel].into()),
             CodesRef::F16(_) | CodesRef::F32(_) => unreachable!("floats have no integer components"),
         };
-        self.integer_vector(reading, component(0), component(1), component)
+        self.integer_vector(reading, component)
     }
 
-    /// The normal whose first components are `x` and `y`; `component(2)` is z where it is stored.
+    /// The normal of a texel whose codes mean the components `component(0)` and so on.
     #[inline(always)]
-    fn integer_vector(&self, reading: &CodeReading, x: i32, y: i32, component: impl Fn(usize) -> i32) -> Vector<i32> {
+    pub fn integer_vector(&self, reading: &CodeReading, component: impl Fn(usize) -> i32) -> Vector<i32> {
+        let [x, y] = [component(0), component(1)];
         let z = match self.channels {
             Channels::Xyz => reading.rising(component(2)),
             Channels::Xy => reading.rebuilt(x, y),
@@ -59,9 +60,7 @@ impl LayerReading {
     #[inline(always)]
     pub fn floats(&self, codes: CodesRef<'_>, index: usize) -> Vector<f32> {
         if let Some(reading) = &self.codes {
-            let [x, y, z] = self.integers(reading, codes, index);
-            let over_l = |u: i32| u as f32 * (1.0 / reading.greatest as f32);
-            return [over_l(x), over_l(y), over_l(z)];
+            return float_of_integers(reading, self.integers(reading, codes, index));
         }
         let at = index * self.channels.count();
         let component = |channel: usize| match codes {
@@ -69,6 +68,12 @@ impl LayerReading {
             CodesRef::F32(codes) => codes[at + channel],
             CodesRef::U8(_) | CodesRef::U16(_) => unreachable!("the format says floats"),
         };
+        self.float_vector(component)
+    }
+
+    /// The normal of a texel that stores the floats `component(0)` and so on, in this order of operations.
+    #[inline(always)]
+    pub fn float_vector(&self, component: impl Fn(usize) -> f32) -> Vector<f32> {
         let [x, y] = [zero_below(SMALLEST, component(0)), zero_below(SMALLEST, component(1))];
         let z = match self.channels {
             Channels::Xyz => component(2).max(LEAST_Z),
@@ -76,4 +81,11 @@ impl LayerReading {
         };
         [x, self.green as f32 * y, z]
     }
+}
+
+/// Integers over L as floats.
+#[inline(always)]
+pub(crate) fn float_of_integers(reading: &CodeReading, [x, y, z]: Vector<i32>) -> Vector<f32> {
+    let over_l = |u: i32| u as f32 * (1.0 / reading.greatest as f32);
+    [over_l(x), over_l(y), over_l(z)]
 }

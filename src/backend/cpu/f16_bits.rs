@@ -1,4 +1,4 @@
-//! From f32 to f16 in integers, so that a loop of it becomes vector code on every machine.
+//! Between f32 and f16 in integers, so that a loop of it becomes vector code on every machine.
 
 use half::f16;
 
@@ -15,6 +15,15 @@ pub(super) fn nearest_f16_of_f32(value: f32) -> f16 {
     let subnormal = (f32::from_bits(magnitude) + 0.5).to_bits() - 0.5f32.to_bits();
     let rounded = if magnitude < LEAST_NORMAL { subnormal } else { normal };
     f16::from_bits(sign | rounded as u16)
+}
+
+/// A finite f16 as it is.
+#[inline(always)]
+pub(super) fn f32_of_f16(value: f16) -> f32 {
+    let bits = u32::from(value.to_bits());
+    // With the exponent's bits in their place it is too small by 2^(127 - 15), subnormal or not.
+    let magnitude = f32::from_bits((bits & 0x7fff) << 13) * 2f32.powi(127 - 15);
+    f32::from_bits(magnitude.to_bits() | (bits & 0x8000) << 16)
 }
 
 #[cfg(test)]
@@ -35,6 +44,13 @@ mod tests {
         }
         for value in [0.0, -0.0, f32::from_bits(1), -f32::MIN_POSITIVE] {
             assert_eq!(nearest_f16_of_f32(value).to_bits(), f16::from_f32(value).to_bits(), "{value:e}");
+        }
+    }
+
+    #[test]
+    fn every_finite_f16_is_an_f32() {
+        for value in (0..=u16::MAX).map(f16::from_bits).filter(|value| value.is_finite()) {
+            assert_eq!(f32_of_f16(value).to_bits(), value.to_f32().to_bits(), "{value:e}");
         }
     }
 }

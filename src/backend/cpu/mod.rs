@@ -1,17 +1,30 @@
 //! The CPU: the plain reference, and the vectorised, threaded implementation that gives the same bytes.
 //!
-//! A band is cut into strips of rows, one for a thread at a time; a strip is baked in blocks of a row that stay in
-//! the first cache, in three passes over planar arrays: stencil sums, codes, interleaved texels. The passes are plain
-//! loops, compiled for several instruction sets.
+//! A band is cut into strips of rows, one for a thread at a time, and a strip into blocks that stay in the first cache.
+//! A block goes through stages over planar arrays, each a plain loop that is compiled for several instruction sets:
+//!
+//! ```text
+//! heights -> sums -> components -> codes -> texels      bake: a normal map, a parallax map or both from the same sums
+//! texels -> normals -> components -> codes -> texels    blend, and parallax with the normals of a map
+//! ```
+//!
+//! Components of integer maps are estimates whose error is bounded. Where that bound leaves a code in doubt, integers
+//! decide.
 
 #[macro_use]
 mod vectorised;
-mod block;
+mod bake;
+mod blend;
 mod f16_bits;
+mod output;
+mod parallax;
+mod plane;
+mod read;
+mod real;
 mod reference;
 mod round;
-mod rule;
-mod strip;
+mod slopes;
+mod sums;
 #[cfg(test)]
 mod tests;
 
@@ -21,8 +34,8 @@ use crate::backend::{Backend, RowBytes, fill_rows};
 use crate::error::{Error, Result};
 use crate::map::{CodesMut, CodesRef};
 use crate::ops::bake::BakePlan;
-use crate::ops::blend::{self, BlendPlan};
-use crate::ops::parallax::{self, ParallaxPlan};
+use crate::ops::blend::BlendPlan;
+use crate::ops::parallax::ParallaxPlan;
 use crate::stream::{CodeSink, HeightBands, LayerBand, LayerBands};
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -71,7 +84,7 @@ impl Cpu {
         rows: usize,
         band_rows: usize,
         maps: &'m mut [CodesMut<'_>],
-        fill: impl Fn(usize, usize, &mut [CodesMut<'m>]) + Sync,
+        fill: impl Fn(usize, usize, Vec<CodesMut<'m>>) + Sync,
     ) {
         let mut strips: Vec<Vec<CodesMut<'m>>> = Vec::new();
         for map in maps {
@@ -84,9 +97,9 @@ impl Cpu {
             }
         }
         let run = || {
-            strips.into_par_iter().enumerate().for_each(|(strip, mut maps)| {
+            strips.into_par_iter().enumerate().for_each(|(strip, maps)| {
                 let first = strip * rows;
-                fill(first, rows.min(band_rows - first), &mut maps);
+                fill(first, rows.min(band_rows - first), maps);
             });
         };
         match &self.own_threads {
@@ -108,6 +121,10 @@ fn part<'a>(band: &LayerBand<'a>, first: usize, rows: usize) -> Vec<CodesRef<'a>
         layer.slice(first * row_codes..(first + rows) * row_codes)
     };
     band.layers.iter().map(slice).collect()
+}
+
+fn the_only(maps: Vec<CodesMut<'_>>) -> CodesMut<'_> {
+    maps.into_iter().next().expect("a map to fill")
 }
 
 impl Backend for Cpu {
@@ -133,7 +150,7 @@ impl Backend for Cpu {
         while let Some(band) = bands.next()? {
             fill_rows(sinks, band.rows(), |maps| {
                 self.in_strips(strip_rows(plan.size.width()), band.rows(), maps, |first, rows, maps| {
-                    strip::bake(plan, &band.part(first, rows), maps);
+                    bake::bake(plan, &band.part(first, rows), maps);
                 });
             })?;
         }
@@ -144,7 +161,7 @@ impl Backend for Cpu {
         while let Some(band) = bands.next()? {
             fill_rows(&mut [&mut *sink], band.rows, |maps| {
                 self.in_strips(strip_rows(plan.size.width()), band.rows, maps, |first, rows, maps| {
-                    blend::codes_of_layers(plan, &part(&band, first, rows), &mut maps[0]);
+                    blend::blend(plan, &part(&band, first, rows), the_only(maps));
                 });
             })?;
         }
@@ -155,7 +172,7 @@ impl Backend for Cpu {
         while let Some(band) = bands.next()? {
             fill_rows(&mut [&mut *sink], band.rows, |maps| {
                 self.in_strips(strip_rows(plan.size.width()), band.rows, maps, |first, rows, maps| {
-                    parallax::codes_of_layers(plan, &part(&band, first, rows), &mut maps[0]);
+                    parallax::parallax(plan, &part(&band, first, rows), the_only(maps));
                 });
             })?;
         }

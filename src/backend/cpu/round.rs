@@ -79,7 +79,7 @@ round_to!(u16);
 /// The code is floor(w) for w = v m/2 + (c + 1)/2. For unorm (c + 1)/2 is an integer, which is added last, so that
 /// w = v m/2 keeps the sign of v; for snorm it is 1/2.
 ///
-/// An estimate v that is off by 8.5e (see `Estimate`) makes v m/2 off by 9.5e of at most 127.5 (8 bits, f32: 7.2e-5)
+/// An estimate v that is off by 8.5e (see [`super::real`]) makes v m/2 off by 9.5e of at most 127.5 (8 bits, f32: 7.2e-5)
 /// or 32767.5 (16 bits, f64: 3.5e-11), and the 1/2 of snorm adds half a unit in the last place (3.9e-6 of 127,
 /// 1.9e-12 of 32767). Where w is further than DOUBT from every integer, floor(w) is right. It is right too where v is
 /// below 2^-17, however near w is to an integer: for unorm that integer is 0, and the sign is right; for snorm w is
@@ -110,6 +110,7 @@ macro_rules! prove {
 }
 
 prove!(u8, f32, 1.0 / 8192.0, integer_bits_f32);
+prove!(u8, f64, 1.0 / 8_589_934_592.0, integer_bits_f64);
 prove!(u16, f64, 1.0 / 8_589_934_592.0, integer_bits_f64);
 
 impl Round for ToF16 {
@@ -150,7 +151,7 @@ impl Prove<f64> for ToF16 {
 impl Prove<f64> for ToF32 {
     type Code = f32;
 
-    /// The estimate is off by 8.5e (see `Estimate`), a side by e more; 16e lie between them.
+    /// The estimate is off by 8.5e (see [`super::real`]), a side by e more; 16e lie between them.
     #[inline(always)]
     fn code_or_doubt(&self, estimate: f64) -> (f32, bool) {
         const SIDE: f64 = 8.0 * f64::EPSILON;
@@ -175,18 +176,19 @@ mod tests {
     #[test]
     fn integer_codes_are_in_doubt_near_their_boundaries_alone() {
         let unorm = to_integer::<u8>(Encoding::Unorm, Depth::Bits8);
-        for (v, code) in [(1.0, 255), (-1.0, 0), (0.0, 128), (1e-9, 128), (-1e-9, 127), (0.5, 191)] {
+        for (v, code) in [(1f32, 255), (-1.0, 0), (0.0, 128), (1e-9, 128), (-1e-9, 127), (0.5, 191)] {
+            assert_eq!(unorm.code_or_doubt(f64::from(v)), (code, false), "unorm {v}");
             assert_eq!(unorm.code_or_doubt(v), (code, false), "unorm {v}");
         }
-        for k in [-127.0, -3.0, 1.0, 100.0] {
+        for k in [-127f32, -3.0, 1.0, 100.0] {
             assert!(unorm.code_or_doubt(k / 127.5).1 && unorm.code_or_doubt((k + 0.00008) / 127.5).1, "unorm {k}");
             assert!(!unorm.code_or_doubt((k + 0.001) / 127.5).1, "unorm {k}");
         }
         let snorm = to_integer::<u8>(Encoding::Snorm, Depth::Bits8);
-        for (v, code) in [(1.0, 127), (-1.0, 129), (0.0, 0), (-1e-9, 0), (-1.0 / 127.0, 255)] {
+        for (v, code) in [(1f32, 127), (-1.0, 129), (0.0, 0), (-1e-9, 0), (-1.0 / 127.0, 255)] {
             assert_eq!(snorm.code_or_doubt(v), (code, false), "snorm {v}");
         }
-        assert!(snorm.code_or_doubt(0.5 / 127.0).1 && snorm.code_or_doubt(-0.5 / 127.0).1);
+        assert!(snorm.code_or_doubt(0.5f32 / 127.0).1 && snorm.code_or_doubt(-0.5f64 / 127.0).1);
         let words = to_integer::<u16>(Encoding::Unorm, Depth::Bits16);
         for (v, code) in [(1.0, 65535), (-1.0, 0), (0.0, 32768), (-1e-12, 32767)] {
             assert_eq!(words.code_or_doubt(v), (code, false), "unorm {v}");

@@ -1,13 +1,17 @@
 //! The vectorised backend against the reference: the same bytes, whatever the options, the size and the threads.
 
+mod fused;
+mod layers;
+
 use super::{Cpu, Reference};
 use crate::backend::{Backend, RowBytes};
 use crate::map::{
-    Channels, Codes, CodesRef, Convention, Depth, Edge, Edges, Encoding, Grid, HeightMap, NormalFormat, Size,
+    Channels, Codes, CodesRef, Convention, Depth, Edge, Edges, Encoding, Grid, HeightMap, HeightType, NormalFormat,
+    ParallaxFormat, Size, TexelFormat,
 };
 use crate::ops::Precision;
-use crate::ops::bake::{BakeOptions, BakePlan, Filter, NormalOptions};
-use crate::stream::{MapBands, MapSink};
+use crate::ops::bake::{BakeOptions, BakePlan, Filter, NormalOptions, ParallaxOptions};
+use crate::stream::{CodeSink, MapBands, MapSink};
 use crate::{Rational, Scale};
 
 /// Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014.
@@ -38,8 +42,8 @@ fn floats([width, height]: [usize; 2], height_at: impl FnMut(usize, usize) -> f3
     Grid::from_fn(width, height, height_at).unwrap().try_into().unwrap()
 }
 
-/// Every encoding with every depth that goes with it, all channels, both conventions.
-fn formats() -> Vec<NormalFormat> {
+/// Every encoding with every depth that goes with it.
+fn parallax_formats() -> Vec<ParallaxFormat> {
     let mut formats = Vec::new();
     for (encoding, depths) in [
         (Encoding::Unorm, [Depth::Bits8, Depth::Bits16]),
@@ -47,50 +51,65 @@ fn formats() -> Vec<NormalFormat> {
         (Encoding::Biased, [Depth::Bits8, Depth::Bits16]),
         (Encoding::Float, [Depth::Float16, Depth::Float32]),
     ] {
-        for depth in depths {
-            for channels in [Channels::Xyz, Channels::Xy] {
-                for convention in [Convention::Gl, Convention::Dx] {
-                    formats.push(NormalFormat { encoding, depth, channels, convention });
-                }
+        formats.extend(depths.map(|depth| ParallaxFormat { encoding, depth }));
+    }
+    formats
+}
+
+/// The same with all channels and both conventions.
+fn formats() -> Vec<NormalFormat> {
+    let mut formats = Vec::new();
+    for ParallaxFormat { encoding, depth } in parallax_formats() {
+        for channels in [Channels::Xyz, Channels::Xy] {
+            for convention in [Convention::Gl, Convention::Dx] {
+                formats.push(NormalFormat { encoding, depth, channels, convention });
             }
         }
     }
     formats
 }
 
+/// The maps of a bake, one after the other.
+fn baked_maps(backend: &dyn Backend, map: &HeightMap, options: &BakeOptions, band_rows: usize) -> Vec<Codes> {
+    let plan = BakePlan::new(options, map.size(), map.height_type()).unwrap();
+    let mut maps: Vec<Codes> = plan.outputs().map(|format| poisoned(plan.size, format)).collect();
+    let sink =
+        |(codes, format): (_, TexelFormat)| MapSink::new(Codes::as_mut(codes), format.row_codes(plan.size.width()));
+    let mut sinks: Vec<MapSink<'_>> = maps.iter_mut().zip(plan.outputs()).map(sink).collect();
+    let mut sinks: Vec<&mut dyn CodeSink> = sinks.iter_mut().map(|sink| sink as &mut dyn CodeSink).collect();
+    backend.bake(&plan, &mut MapBands::new(map, plan.edges.y, band_rows), &mut sinks).unwrap();
+    drop(sinks);
+    maps
+}
+
 fn baked(backend: &dyn Backend, map: &HeightMap, options: &NormalOptions, band_rows: usize) -> Codes {
-    let plan = BakePlan::new(&(*options).into(), map.size(), map.height_type()).unwrap();
-    let format = options.format.texel();
-    // Poisoned, so that a texel that nobody writes cannot pass.
-    let mut codes = Codes::zeroed(format.depth, plan.size.texels() * format.channels);
+    baked_maps(backend, map, &(*options).into(), band_rows).remove(0)
+}
+
+/// Room that a texel which nobody writes cannot leave unnoticed.
+fn poisoned(size: Size, format: TexelFormat) -> Codes {
+    let mut codes = Codes::zeroed(format.depth, size.texels() * format.channels);
     codes.as_mut().bytes_mut().fill(0xa5);
-    let mut sink = MapSink::new(codes.as_mut(), format.row_codes(plan.size.width()));
-    backend.bake(&plan, &mut MapBands::new(map, plan.edges.y, band_rows), &mut [&mut sink]).unwrap();
     codes
 }
 
 /// The first texel whose bytes differ, in words.
-fn difference(map: &HeightMap, options: &NormalOptions, got: &Codes, expected: &Codes) -> Option<String> {
+fn difference(size: Size, format: TexelFormat, got: &Codes, expected: &Codes) -> Option<String> {
     let (got, expected) = (got.as_ref(), expected.as_ref());
-    let code_bytes = options.format.depth.bytes();
+    assert_eq!((got.len(), got.depth()), (expected.len(), expected.depth()));
+    let code_bytes = format.depth.bytes();
     let at = got.bytes().iter().zip(expected.bytes()).position(|(got, expected)| got != expected)? / code_bytes;
-    let texel = at / options.format.channels.count();
-    let (x, y) = (texel % map.size().width(), texel / map.size().width());
+    let texel = at / format.channels;
+    let (x, y) = (texel % size.width(), texel / size.width());
     let code = |codes: CodesRef<'_>| format!("{:x?}", &codes.bytes()[at * code_bytes..][..code_bytes]);
-    Some(format!(
-        "{} {} code {at}, column {x}, row {y}: {} is not {}; {options:?}",
-        map.size(),
-        map.height_type(),
-        code(got),
-        code(expected)
-    ))
+    Some(format!("{size} code {at}, column {x}, row {y}: {} is not {}; {format:?}", code(got), code(expected)))
 }
 
 fn assert_same_bytes(map: &HeightMap, options: &NormalOptions) {
     let expected = baked(&Reference, map, options, map.size().height());
     let got = baked(&Cpu::shared(), map, options, 7);
-    assert_eq!(got.as_ref().len(), expected.as_ref().len());
-    assert_eq!(difference(map, options, &got, &expected), None);
+    let difference = difference(map.size(), options.format.texel(), &got, &expected);
+    assert_eq!(difference, None, "{} {options:?}", map.height_type());
 }
 
 fn scale(text: &str) -> Scale {
@@ -171,7 +190,7 @@ fn the_comparison_sees_one_code() {
     let expected = baked(&Reference, &map, &options, 3);
     let mut sabotaged = expected.clone();
     sabotaged.as_mut().bytes_mut()[22] ^= 1;
-    let difference = difference(&map, &options, &sabotaged, &expected).unwrap();
+    let difference = difference(map.size(), options.format.texel(), &sabotaged, &expected).unwrap();
     assert!(difference.contains("code 22, column 2, row 1"), "{difference}");
 }
 
@@ -232,13 +251,17 @@ fn extreme_floats() {
 fn neither_threads_nor_bands_change_a_byte() {
     let mut random = SplitMix(7);
     // Wide enough for several strips in a band.
-    for map in maps([4099, 61], |_, _| random.next() as u16) {
+    for map in &maps([4099, 61], |_, _| random.next() as u16) {
         for precision in [Precision::Exact, Precision::Fast] {
             let options = NormalOptions { scale: scale("24"), precision, ..NormalOptions::default() };
-            let expected = baked(&Cpu::with_threads(1).unwrap(), &map, &options, 61);
+            let expected = baked(&Cpu::with_threads(1).unwrap(), map, &options, 61);
             for (threads, band_rows) in [(1, 1), (2, 61), (2, 16), (3, 61), (3, 5)] {
-                let got = baked(&Cpu::with_threads(threads).unwrap(), &map, &options, band_rows);
-                assert_eq!(difference(&map, &options, &got, &expected), None, "{threads} threads, {band_rows} rows");
+                let got = baked(&Cpu::with_threads(threads).unwrap(), map, &options, band_rows);
+                assert_eq!(
+                    difference(map.size(), options.format.texel(), &got, &expected),
+                    None,
+                    "{threads} threads, {band_rows} rows"
+                );
             }
         }
     }
@@ -255,21 +278,26 @@ fn fast_is_next_to_exact() {
                 let exact = NormalOptions { scale: scale(text), format, ..NormalOptions::default() };
                 let fast = NormalOptions { precision: Precision::Fast, ..exact };
                 let [exact, fast] = [exact, fast].map(|options| baked(&Cpu::shared(), &map, &options, 64));
-                let greatest = match (fast.as_ref(), exact.as_ref()) {
-                    (CodesRef::U8(a), CodesRef::U8(b)) => greatest_step(a, b, |a, b| a.wrapping_sub(b) as i8 as f64),
-                    (CodesRef::U16(a), CodesRef::U16(b)) => greatest_step(a, b, |a, b| a.wrapping_sub(b) as i16 as f64),
-                    (CodesRef::F16(a), CodesRef::F16(b)) => {
-                        greatest_step(a, b, |a, b| (a.to_bits() as i32 - b.to_bits() as i32) as f64)
-                    }
-                    (CodesRef::F32(a), CodesRef::F32(b)) => {
-                        greatest_step(a, b, |a, b| (a.to_bits() as i32 - b.to_bits() as i32) as f64)
-                    }
-                    _ => panic!("two depths"),
-                };
+                let greatest = codes_apart(&fast, &exact);
                 let bound = if format.depth == Depth::Float32 { 16.0 } else { 1.0 };
                 assert!(greatest <= bound, "{greatest} codes apart: {format:?}, scale {text}");
             }
         }
+    }
+}
+
+/// How far the codes of two maps are apart at most, in steps from one code to the next.
+fn codes_apart(a: &Codes, b: &Codes) -> f64 {
+    match (a.as_ref(), b.as_ref()) {
+        (CodesRef::U8(a), CodesRef::U8(b)) => greatest_step(a, b, |a, b| a.wrapping_sub(b) as i8 as f64),
+        (CodesRef::U16(a), CodesRef::U16(b)) => greatest_step(a, b, |a, b| a.wrapping_sub(b) as i16 as f64),
+        (CodesRef::F16(a), CodesRef::F16(b)) => {
+            greatest_step(a, b, |a, b| (a.to_bits() as i32 - b.to_bits() as i32) as f64)
+        }
+        (CodesRef::F32(a), CodesRef::F32(b)) => {
+            greatest_step(a, b, |a, b| (a.to_bits() as i32 - b.to_bits() as i32) as f64)
+        }
+        _ => panic!("two depths"),
     }
 }
 
@@ -287,8 +315,7 @@ fn the_device_says_what_runs() {
 #[test]
 fn bands_hold_some_rows_for_every_thread() {
     let rows = |width, height| {
-        let plan =
-            BakePlan::new(&BakeOptions::default(), Size::new(width, height).unwrap(), crate::map::HeightType::U16);
+        let plan = BakePlan::new(&BakeOptions::default(), Size::new(width, height).unwrap(), HeightType::U16);
         Cpu::with_threads(3).unwrap().band_rows(RowBytes::of_bake(&plan.unwrap()))
     };
     assert_eq!(rows(4096, 4096), 51); // 1 MiB over 4096 (2 + 3) bytes

@@ -3,6 +3,7 @@
 //! Every method has the form (ca x1 + cb x2, ca y1 + cb y2, Z). On integers over L1 and L2 each is multiplied by what
 //! makes it an integer too, so that the result is A / sqrt(S) and can be rounded correctly (DESIGN 3.1).
 
+use super::formula::blended;
 use super::{BlendMethod, BlendPlan};
 use crate::map::{CodesMut, CodesRef};
 use crate::ops::Vector;
@@ -48,61 +49,29 @@ fn weights_of_texel(plan: &BlendPlan, mask: Option<CodesRef<'_>>, texel: usize) 
 ///
 /// Components are at most 65535, weights too; every part of the result is below 2^53, the sum of its squares below
 /// 2^107.
-#[inline(always)]
 pub(crate) fn blend_integers(
     method: BlendMethod,
-    [a, b, q]: [i32; 3],
-    [l1, l2]: [i32; 2],
+    weights: [i32; 3],
+    scales: [i32; 2],
     base: Vector<i32>,
     detail: Vector<i32>,
 ) -> Vector<i64> {
-    let [a, b, q, l1, l2] = [a, b, q, l1, l2].map(i64::from);
-    let ([x1, y1, z1], [x2, y2, z2]) = (base.map(i64::from), detail.map(i64::from));
-    let overlay = |v1: i64, v2: i64| l2 * v1 + (l1 - v1.abs()) * v2;
-    let [x, y, z] = match method {
-        BlendMethod::Weighted { .. } | BlendMethod::Masked => {
-            let (ca, cb) = (a * z2, b * z1);
-            [ca * x1 + cb * x2, ca * y1 + cb * y2, q * z1 * z2]
-        }
-        BlendMethod::Linear => [l2 * x1 + l1 * x2, l2 * y1 + l1 * y2, l2 * z1 + l1 * z2],
-        BlendMethod::Overlay => [overlay(x1, x2), overlay(y1, y2), overlay(z1, z2)],
-        BlendMethod::Udn => [l2 * x1 + l1 * x2, l2 * y1 + l1 * y2, l2 * z1],
-        BlendMethod::Whiteout => [l2 * x1 + l1 * x2, l2 * y1 + l1 * y2, z1 * z2],
-        BlendMethod::Rnm => {
-            // t = (x1, y1, z1 + 1), u = (-x2, -y2, z2); t (t.u) / t_z - u, times t_z.
-            let tz = z1 + l1;
-            let tu = tz * z2 - (x1 * x2 + y1 * y2);
-            [tu * x1 + l1 * tz * x2, tu * y1 + l1 * tz * y2, tz * (tu - l1 * z2)]
-        }
-    };
-    if [x, y, z] == [0; 3] { [0, 0, 1] } else { [x, y, z] }
+    let [base, detail] = [base, detail].map(|normal| normal.map(i64::from));
+    match blended(method, weights.map(i64::from), scales.map(i64::from), base, detail) {
+        [0, 0, 0] => [0, 0, 1],
+        normal => normal,
+    }
 }
 
 /// The blended unit normal in f32, in this order of operations; (0, 0, 1) where nothing is left.
 #[inline(always)]
 pub(crate) fn blend_floats(
     method: BlendMethod,
-    weights: [i32; 3],
-    [x1, y1, z1]: Vector<f32>,
-    [x2, y2, z2]: Vector<f32>,
+    [a, b, q]: [i32; 3],
+    base: Vector<f32>,
+    detail: Vector<f32>,
 ) -> Vector<f32> {
-    let [a, b, q] = [weights[0] as f32, weights[1] as f32, weights[2] as f32];
-    let overlay = |v1: f32, v2: f32| v1 + (1.0 - v1.abs()) * v2;
-    let [x, y, z] = match method {
-        BlendMethod::Weighted { .. } | BlendMethod::Masked => {
-            let (ca, cb) = (a * z2, b * z1);
-            [ca * x1 + cb * x2, ca * y1 + cb * y2, q * (z1 * z2)]
-        }
-        BlendMethod::Linear => [x1 + x2, y1 + y2, z1 + z2],
-        BlendMethod::Overlay => [overlay(x1, x2), overlay(y1, y2), overlay(z1, z2)],
-        BlendMethod::Udn => [x1 + x2, y1 + y2, z1],
-        BlendMethod::Whiteout => [x1 + x2, y1 + y2, z1 * z2],
-        BlendMethod::Rnm => {
-            let tz = z1 + 1.0;
-            let tu = tz * z2 - (x1 * x2 + y1 * y2);
-            [tu * x1 + tz * x2, tu * y1 + tz * y2, tz * (tu - z2)]
-        }
-    };
+    let [x, y, z] = blended(method, [a as f32, b as f32, q as f32], [1.0; 2], base, detail);
     // So that no square is subnormal.
     let part = |part: f32| zero_below(2f32.powi(-60), part);
     let [x, y, z] = [part(x), part(y), part(z)];

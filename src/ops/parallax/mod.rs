@@ -7,4 +7,4 @@ mod plan;
 mod reference;
 
 pub(crate) use plan::ParallaxPlan;
-pub(crate) use reference::codes_of_layers;
+pub(crate) use reference::{codes_of_layers, parallax_of_floats, parallax_of_integers};

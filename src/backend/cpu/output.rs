@@ -1,0 +1,185 @@
+//! The last stages of every operation: planes of components become planes of codes, and these interleaved texels.
+
+use super::plane::{BLOCK, LANES, Plane, padded};
+use super::round::{Prove, Round, ToF16, ToF32, ToInteger};
+use crate::map::{CodesMut, TexelFormat};
+
+/// Components a / sqrt(s), for as many a as there are channels.
+pub(super) type Fraction = ([i64; 3], u128);
+
+/// The codes of a map, texel after texel.
+pub(super) trait Output<V> {
+    /// Stores the next `count` texels. A component in doubt becomes what `exact` says for the texel of its index.
+    fn store(&mut self, components: &[&Plane<V>], count: usize, exact: &dyn Fn(usize) -> Fraction);
+}
+
+/// Room for texels whose components are floats as the reference computes them, or need be no better.
+pub(super) fn written<'a>(format: TexelFormat, codes: CodesMut<'a>) -> Box<dyn Output<f32> + 'a> {
+    match codes {
+        CodesMut::U8(codes) => of_channels(format, Written(ToInteger::<u8>::new(format)), codes),
+        CodesMut::U16(codes) => of_channels(format, Written(ToInteger::<u16>::new(format)), codes),
+        CodesMut::F16(codes) => of_channels(format, Written(ToF16), codes),
+        CodesMut::F32(codes) => of_channels(format, Written(ToF32), codes),
+    }
+}
+
+/// Floats whose error can be told from the distance between codes.
+pub(super) trait Proving: Copy + Default {
+    /// Room for texels whose components are estimates, off by 8.5e at most (see [`super::real`]).
+    fn proved<'a>(format: TexelFormat, codes: CodesMut<'a>) -> Box<dyn Output<Self> + 'a>;
+}
+
+impl Proving for f32 {
+    fn proved<'a>(format: TexelFormat, codes: CodesMut<'a>) -> Box<dyn Output<f32> + 'a> {
+        match codes {
+            CodesMut::U8(codes) => of_channels(format, Proved(ToInteger::<u8>::new(format)), codes),
+            _ => unreachable!("f32 is for codes of 8 bits"),
+        }
+    }
+}
+
+impl Proving for f64 {
+    fn proved<'a>(format: TexelFormat, codes: CodesMut<'a>) -> Box<dyn Output<f64> + 'a> {
+        match codes {
+            CodesMut::U8(codes) => of_channels(format, Proved(ToInteger::<u8>::new(format)), codes),
+            CodesMut::U16(codes) => of_channels(format, Proved(ToInteger::<u16>::new(format)), codes),
+            CodesMut::F16(codes) => of_channels(format, Proved(ToF16), codes),
+            CodesMut::F32(codes) => of_channels(format, Proved(ToF32), codes),
+        }
+    }
+}
+
+/// From a component to its code, which may be in doubt.
+trait Rule<V> {
+    type Code: Copy + Default;
+
+    fn code(&self, component: V) -> (Self::Code, bool);
+
+    /// The code of `a / sqrt(s)`.
+    fn exact(&self, a: i64, s: u128) -> Self::Code;
+}
+
+struct Written<R>(R);
+
+struct Proved<R>(R);
+
+impl<R: Round> Rule<f32> for Written<R> {
+    type Code = R::Code;
+
+    #[inline(always)]
+    fn code(&self, component: f32) -> (R::Code, bool) {
+        (self.0.code(component), false)
+    }
+
+    fn exact(&self, _: i64, _: u128) -> R::Code {
+        unreachable!("written floats have no doubts")
+    }
+}
+
+impl<V, R: Prove<V>> Rule<V> for Proved<R> {
+    type Code = R::Code;
+
+    #[inline(always)]
+    fn code(&self, component: V) -> (R::Code, bool) {
+        self.0.code_or_doubt(component)
+    }
+
+    #[cold]
+    fn exact(&self, a: i64, s: u128) -> R::Code {
+        self.0.exact(a, s)
+    }
+}
+
+fn of_channels<'a, V: Copy, R: Rule<V> + 'a>(
+    format: TexelFormat,
+    rule: R,
+    codes: &'a mut [R::Code],
+) -> Box<dyn Output<V> + 'a> {
+    match format.channels {
+        1 => Box::new(Texels::<R, R::Code, 1>::new(rule, codes)),
+        2 => Box::new(Texels::<R, R::Code, 2>::new(rule, codes)),
+        _ => Box::new(Texels::<R, R::Code, 3>::new(rule, codes)),
+    }
+}
+
+/// Texels of N codes, and scratch for one block of them.
+struct Texels<'a, R, C, const N: usize> {
+    rule: R,
+    /// Those to come.
+    codes: &'a mut [C],
+    planes: [Plane<C>; N],
+    doubts: Plane<bool>,
+    /// What was in doubt last, and its codes.
+    mended: Option<(Fraction, [C; N])>,
+}
+
+impl<'a, R, C: Copy + Default, const N: usize> Texels<'a, R, C, N> {
+    fn new(rule: R, codes: &'a mut [C]) -> Self {
+        Self { rule, codes, planes: [[C::default(); BLOCK]; N], doubts: [false; BLOCK], mended: None }
+    }
+}
+
+impl<V: Copy, R: Rule<V>, const N: usize> Output<V> for Texels<'_, R, R::Code, N> {
+    fn store(&mut self, components: &[&Plane<V>], count: usize, exact: &dyn Fn(usize) -> Fraction) {
+        let components = components.first_chunk().expect("a component for each channel");
+        codes_or_doubts(&self.rule, components, &mut self.planes, &mut self.doubts, padded(count));
+        self.mend(count, exact);
+        let (texels, rest) = std::mem::take(&mut self.codes).split_at_mut(count * N);
+        interleave(&self.planes, texels);
+        self.codes = rest;
+    }
+}
+
+impl<C: Copy, R, const N: usize> Texels<'_, R, C, N> {
+    /// The exact codes of the texels in doubt.
+    fn mend<V>(&mut self, count: usize, exact: &dyn Fn(usize) -> Fraction)
+    where
+        R: Rule<V, Code = C>,
+    {
+        for group in (0..count).step_by(LANES) {
+            if self.doubts[group..][..LANES].iter().fold(false, |any, doubt| any | doubt) {
+                let in_doubt = |at: &usize| self.doubts[*at];
+                for at in (group..(group + LANES).min(count)).filter(in_doubt) {
+                    let fraction = exact(at);
+                    // On a plane every texel may lie on the same tie.
+                    let codes = match self.mended {
+                        Some((mended, codes)) if mended == fraction => codes,
+                        _ => std::array::from_fn(|channel| self.rule.exact(fraction.0[channel], fraction.1)),
+                    };
+                    self.mended = Some((fraction, codes));
+                    self.planes.iter_mut().zip(codes).for_each(|(plane, code)| plane[at] = code);
+                }
+            }
+        }
+    }
+}
+
+vectorised! {
+    fn codes_or_doubts<V: Copy, R: Rule<V>, const N: usize>(
+        rule: &R,
+        components: &[&Plane<V>; N],
+        codes: &mut [Plane<R::Code>; N],
+        doubts: &mut Plane<bool>,
+        count: usize,
+    ) {
+        for i in 0..count.min(BLOCK) {
+            let mut any = false;
+            for channel in 0..N {
+                let (code, doubt) = rule.code(components[channel][i]);
+                codes[channel][i] = code;
+                any |= doubt;
+            }
+            doubts[i] = any;
+        }
+    }
+}
+
+vectorised! {
+    fn interleave<C: Copy, const N: usize>(codes: &[Plane<C>; N], texels: &mut [C]) {
+        for (i, texel) in texels.as_chunks_mut::<N>().0.iter_mut().enumerate().take(BLOCK) {
+            for channel in 0..N {
+                texel[channel] = codes[channel][i];
+            }
+        }
+    }
+}
