@@ -1,9 +1,8 @@
 //! Faults, really caused: each must end as an error that says what happened, and none with a wrong row.
 
 use super::device::Device;
-use super::kernel::NORMAL_INTEGER_CODES;
-use super::transfer::Transfer;
-use super::{Gpu, adapters};
+use super::kernel::BAKE_INTEGER_HEIGHTS;
+use super::{Gpu, adapters, bake as device_bake};
 use crate::backend::Backend;
 use crate::error::Result;
 use crate::map::{Edge, Grid, HeightMap, HeightType, NormalFormat, NormalMap, Size};
@@ -46,7 +45,8 @@ fn bake(device: &Device, before: impl FnMut(usize)) -> Result<NormalMap> {
     let plan = plan(&map);
     let mut normal = NormalMap::zeroed(plan.size, NormalFormat::default());
     let mut bands = Told { bands: MapBands::new(&map, Edge::Wrap, 8), count: 0, before };
-    Transfer::new(device, &plan)?.run(&mut bands, &mut MapSink::new(normal.codes_mut(), 3 * plan.size.width()))?;
+    let sink = &mut MapSink::new(normal.codes_mut(), 3 * plan.size.width());
+    device_bake::run(device, &plan, &mut bands, &mut [sink])?;
     Ok(normal)
 }
 
@@ -58,9 +58,9 @@ fn rows_that_were_not_computed_are_noticed() {
         ("a mark of another dispatch", "= params.nonce;", "= params.nonce - 2u;", 0),
     ] {
         let Some(device) = lavapipe() else { return };
-        let text = NORMAL_INTEGER_CODES.text();
+        let text = BAKE_INTEGER_HEIGHTS.text();
         assert!(text.contains(from), "{what}");
-        device.substitute(NORMAL_INTEGER_CODES, &text.replacen(from, to, 1));
+        device.substitute(BAKE_INTEGER_HEIGHTS, &text.replacen(from, to, 1));
         let error = bake(&device, |_| ()).expect_err(what).to_string();
         assert!(error.ends_with(&format!(": row {row} of a band came back without having been computed")), "{error}");
     }

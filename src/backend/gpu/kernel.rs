@@ -20,39 +20,44 @@ impl KernelSource {
     }
 }
 
-const NORMAL: &str = include_str!("../../../kernels/normal.wgsl");
-const INTEGER_CODES: &str = include_str!("../../../kernels/normal/integer_codes.wgsl");
-const INTEGER_FLOATS: &str = include_str!("../../../kernels/normal/integer_floats.wgsl");
-const WIDE_NORMAL: &str = include_str!("../../../kernels/normal/wide_normal.wgsl");
-const FLOAT_HEIGHTS: &str = include_str!("../../../kernels/normal/float_heights.wgsl");
-const FAST: &str = include_str!("../../../kernels/normal/fast.wgsl");
+/// A kernel as it is compiled: its text, and the values of its overrides.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(crate) struct Kernel {
+    pub source: KernelSource,
+    /// Every override of the text; a bool is 0 or 1.
+    pub constants: Vec<(&'static str, u32)>,
+}
+
+const BAKE: &str = include_str!("../../../kernels/bake.wgsl");
+const INTEGER_HEIGHTS: &str = include_str!("../../../kernels/bake/integer_heights.wgsl");
+const FLOAT_HEIGHTS: &str = include_str!("../../../kernels/bake/float_heights.wgsl");
+const FAST: &str = include_str!("../../../kernels/bake/fast.wgsl");
 const HEIGHTS: &str = include_str!("../../../kernels/shared/heights.wgsl");
 const CODES: &str = include_str!("../../../kernels/shared/codes.wgsl");
+const NEAREST_CODE: &str = include_str!("../../../kernels/shared/nearest_code.wgsl");
+const NEAREST_FLOAT: &str = include_str!("../../../kernels/shared/nearest_float.wgsl");
 const WIDE: &str = include_str!("../../../kernels/shared/wide.wgsl");
 const SOFT_FLOAT: &str = include_str!("../../../kernels/shared/soft_float.wgsl");
+const UNIT: &str = include_str!("../../../kernels/shared/unit.wgsl");
+const FLOAT_PARALLAX: &str = include_str!("../../../kernels/shared/float_parallax.wgsl");
+const FAST_CODE: &str = include_str!("../../../kernels/shared/fast_code.wgsl");
 
-pub(crate) const NORMAL_INTEGER_CODES: KernelSource = KernelSource {
-    name: "normal, integer heights to integer codes",
-    entry_point: "normal",
-    files: &[NORMAL, INTEGER_CODES, WIDE_NORMAL, HEIGHTS, CODES, WIDE],
+pub(crate) const BAKE_INTEGER_HEIGHTS: KernelSource = KernelSource {
+    name: "bake, integer heights",
+    entry_point: "bake",
+    files: &[BAKE, INTEGER_HEIGHTS, HEIGHTS, CODES, NEAREST_CODE, NEAREST_FLOAT, WIDE, SOFT_FLOAT],
 };
-pub(crate) const NORMAL_INTEGER_FLOATS: KernelSource = KernelSource {
-    name: "normal, integer heights to floats",
-    entry_point: "normal",
-    files: &[NORMAL, INTEGER_FLOATS, WIDE_NORMAL, HEIGHTS, CODES, WIDE, SOFT_FLOAT],
+pub(crate) const BAKE_FLOAT_HEIGHTS: KernelSource = KernelSource {
+    name: "bake, float heights",
+    entry_point: "bake",
+    files: &[BAKE, FLOAT_HEIGHTS, HEIGHTS, CODES, UNIT, FLOAT_PARALLAX, WIDE, SOFT_FLOAT],
 };
-pub(crate) const NORMAL_FLOAT_HEIGHTS: KernelSource = KernelSource {
-    name: "normal, float heights",
-    entry_point: "normal",
-    files: &[NORMAL, FLOAT_HEIGHTS, HEIGHTS, CODES, WIDE, SOFT_FLOAT],
-};
-pub(crate) const NORMAL_FAST: KernelSource = KernelSource {
-    name: "normal, fast",
-    entry_point: "normal",
-    files: &[NORMAL, FAST, HEIGHTS, CODES, WIDE, SOFT_FLOAT],
+pub(crate) const BAKE_FAST: KernelSource = KernelSource {
+    name: "bake, fast",
+    entry_point: "bake",
+    files: &[BAKE, FAST, HEIGHTS, CODES, FAST_CODE, WIDE, SOFT_FLOAT],
 };
 
 /// Every kernel that a backend may run.
 #[cfg(test)]
-pub(crate) const ALL: [KernelSource; 4] =
-    [NORMAL_INTEGER_CODES, NORMAL_INTEGER_FLOATS, NORMAL_FLOAT_HEIGHTS, NORMAL_FAST];
+pub(crate) const ALL: [KernelSource; 3] = [BAKE_INTEGER_HEIGHTS, BAKE_FLOAT_HEIGHTS, BAKE_FAST];
