@@ -32,11 +32,23 @@ const BAKE: &str = include_str!("../../../kernels/bake.wgsl");
 const INTEGER_HEIGHTS: &str = include_str!("../../../kernels/bake/integer_heights.wgsl");
 const FLOAT_HEIGHTS: &str = include_str!("../../../kernels/bake/float_heights.wgsl");
 const FAST: &str = include_str!("../../../kernels/bake/fast.wgsl");
+const BLEND: &str = include_str!("../../../kernels/blend.wgsl");
+const BLENDED_INTEGERS: &str = include_str!("../../../kernels/blend/integers.wgsl");
+const BLENDED_FLOATS: &str = include_str!("../../../kernels/blend/floats.wgsl");
+const BLENDED_FAST: &str = include_str!("../../../kernels/blend/fast.wgsl");
+const PARALLAX: &str = include_str!("../../../kernels/parallax.wgsl");
+const INTEGER_MAPS: &str = include_str!("../../../kernels/parallax/integers.wgsl");
+const FLOAT_MAPS: &str = include_str!("../../../kernels/parallax/floats.wgsl");
+const FAST_MAPS: &str = include_str!("../../../kernels/parallax/fast.wgsl");
+const READ_CODES: &str = include_str!("../../../kernels/shared/read_codes.wgsl");
+const FLOAT_NORMALS: &str = include_str!("../../../kernels/shared/float_normals.wgsl");
+const FAST_NORMALS: &str = include_str!("../../../kernels/shared/fast_normals.wgsl");
 const HEIGHTS: &str = include_str!("../../../kernels/shared/heights.wgsl");
 const CODES: &str = include_str!("../../../kernels/shared/codes.wgsl");
 const NEAREST_CODE: &str = include_str!("../../../kernels/shared/nearest_code.wgsl");
 const NEAREST_FLOAT: &str = include_str!("../../../kernels/shared/nearest_float.wgsl");
 const WIDE: &str = include_str!("../../../kernels/shared/wide.wgsl");
+const SIGNED: &str = include_str!("../../../kernels/shared/signed.wgsl");
 const SOFT_FLOAT: &str = include_str!("../../../kernels/shared/soft_float.wgsl");
 const UNIT: &str = include_str!("../../../kernels/shared/unit.wgsl");
 const FLOAT_PARALLAX: &str = include_str!("../../../kernels/shared/float_parallax.wgsl");
@@ -57,7 +69,47 @@ pub(crate) const BAKE_FAST: KernelSource = KernelSource {
     entry_point: "bake",
     files: &[BAKE, FAST, HEIGHTS, CODES, FAST_CODE, WIDE, SOFT_FLOAT],
 };
+pub(crate) const BLEND_INTEGERS: KernelSource = KernelSource {
+    name: "blend, integer maps",
+    entry_point: "blend",
+    files: &[BLEND, BLENDED_INTEGERS, READ_CODES, CODES, NEAREST_CODE, NEAREST_FLOAT, SIGNED, WIDE, SOFT_FLOAT],
+};
+pub(crate) const BLEND_FLOATS: KernelSource = KernelSource {
+    name: "blend, float maps",
+    entry_point: "blend",
+    files: &[BLEND, BLENDED_FLOATS, READ_CODES, FLOAT_NORMALS, CODES, UNIT, WIDE, SOFT_FLOAT],
+};
+pub(crate) const BLEND_FAST: KernelSource = KernelSource {
+    name: "blend, fast",
+    entry_point: "blend",
+    files: &[BLEND, BLENDED_FAST, READ_CODES, FAST_NORMALS, CODES, FAST_CODE, WIDE, SOFT_FLOAT],
+};
+pub(crate) const PARALLAX_INTEGERS: KernelSource = KernelSource {
+    name: "parallax, integer maps",
+    entry_point: "parallax",
+    files: &[PARALLAX, INTEGER_MAPS, READ_CODES, CODES, NEAREST_CODE, NEAREST_FLOAT, WIDE, SOFT_FLOAT],
+};
+pub(crate) const PARALLAX_FLOATS: KernelSource = KernelSource {
+    name: "parallax, float maps",
+    entry_point: "parallax",
+    files: &[PARALLAX, FLOAT_MAPS, READ_CODES, FLOAT_NORMALS, CODES, UNIT, FLOAT_PARALLAX, WIDE, SOFT_FLOAT],
+};
+pub(crate) const PARALLAX_FAST: KernelSource = KernelSource {
+    name: "parallax, fast",
+    entry_point: "parallax",
+    files: &[PARALLAX, FAST_MAPS, READ_CODES, FAST_NORMALS, CODES, FAST_CODE, WIDE, SOFT_FLOAT],
+};
 
 /// Every kernel that a backend may run.
 #[cfg(test)]
-pub(crate) const ALL: [KernelSource; 3] = [BAKE_INTEGER_HEIGHTS, BAKE_FLOAT_HEIGHTS, BAKE_FAST];
+pub(crate) const ALL: [KernelSource; 9] = [
+    BAKE_INTEGER_HEIGHTS,
+    BAKE_FLOAT_HEIGHTS,
+    BAKE_FAST,
+    BLEND_INTEGERS,
+    BLEND_FLOATS,
+    BLEND_FAST,
+    PARALLAX_INTEGERS,
+    PARALLAX_FLOATS,
+    PARALLAX_FAST,
+];

@@ -7,7 +7,9 @@ mod device;
 #[cfg(test)]
 mod faults;
 mod hosted;
+mod input;
 mod kernel;
+mod layers;
 mod operation;
 mod output;
 mod parallax;
@@ -25,6 +27,7 @@ use crate::ops::parallax::ParallaxPlan;
 use crate::stream::{CodeSink, HeightBands, LayerBands};
 use device::Device;
 pub use hosted::{CodeTarget, HeightSource, Hosted, NormalBake};
+use layers::LayerOperation;
 use operation::{Operation, TEXELS_PER_INVOCATION, WORKGROUP, output_row_bytes};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -96,6 +99,18 @@ impl Gpu {
         self.check_width(plan)?;
         self_test::accept_bake(&self.device, plan)
     }
+
+    /// Runs an operation on several maps.
+    fn run_layers(
+        &self,
+        plan: &impl LayerOperation,
+        bands: &mut dyn LayerBands,
+        sink: &mut dyn CodeSink,
+    ) -> Result<()> {
+        self.check_width(plan)?;
+        layers::accept(&self.device, plan)?;
+        layers::run(&self.device, plan, bands, &mut [sink])
+    }
 }
 
 impl Backend for Gpu {
@@ -117,11 +132,11 @@ impl Backend for Gpu {
     }
 
     fn blend(&self, plan: &BlendPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {
-        blend::run(&self.device, plan, bands, &mut [sink])
+        self.run_layers(plan, bands, sink)
     }
 
     fn parallax(&self, plan: &ParallaxPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {
-        parallax::run(&self.device, plan, bands, &mut [sink])
+        self.run_layers(plan, bands, sink)
     }
 }
 

@@ -2,7 +2,6 @@
 
 use super::kernel::Kernel;
 use crate::map::{CodesRef, TexelFormat};
-use crate::stream::LayerBand;
 
 /// Texels that one invocation computes: rows are padded to a multiple, up and down.
 pub(super) const TEXELS_PER_INVOCATION: usize = 4;
@@ -74,10 +73,4 @@ pub(super) fn row_bytes(width: usize, texel_bytes: usize) -> usize {
 /// Bytes of a row of each map.
 pub(super) fn output_row_bytes(operation: &impl Operation) -> Vec<usize> {
     operation.outputs().iter().map(|format| row_bytes(operation.width(), format.bytes())).collect()
-}
-
-/// The layers of a band without a halo.
-#[expect(dead_code, reason = "for the operations on several maps")]
-pub(super) fn layers_of<'a>(band: &LayerBand<'a>) -> Vec<Layer<'a>> {
-    band.layers.iter().map(|&codes| Layer { rows: band.rows, codes }).collect()
 }
