@@ -5,7 +5,7 @@ use super::kernel::BAKE_INTEGER_HEIGHTS;
 use super::{Gpu, adapters, bake as device_bake};
 use crate::backend::Backend;
 use crate::error::Result;
-use crate::map::{Edge, Grid, HeightMap, HeightType, NormalFormat, NormalMap, Size};
+use crate::map::{Edge, Grid, HeightMap, HeightType, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Size};
 use crate::ops::bake::{BakeOptions, BakePlan};
 use crate::stream::{HeightBand, HeightBands, MapBands, MapSink};
 
@@ -24,11 +24,12 @@ fn map() -> HeightMap {
 }
 
 fn plan(map: &HeightMap) -> BakePlan {
-    BakePlan::new(&BakeOptions::default(), map.size(), map.height_type()).unwrap()
+    let options = BakeOptions { parallax: Some(ParallaxFormat::default()), ..Default::default() };
+    BakePlan::new(&options, map.size(), map.height_type()).unwrap()
 }
 
-/// Bakes in bands of eight rows; before each band `before` is told which one it is.
-fn bake(device: &Device, before: impl FnMut(usize)) -> Result<NormalMap> {
+/// Bakes a normal and a parallax map in bands of eight rows; before each band `before` is told which one it is.
+fn bake(device: &Device, before: impl FnMut(usize)) -> Result<(NormalMap, ParallaxMap)> {
     struct Told<'a, F> {
         bands: MapBands<'a>,
         count: usize,
@@ -45,9 +46,11 @@ fn bake(device: &Device, before: impl FnMut(usize)) -> Result<NormalMap> {
     let plan = plan(&map);
     let mut normal = NormalMap::zeroed(plan.size, NormalFormat::default());
     let mut bands = Told { bands: MapBands::new(&map, Edge::Wrap, 8), count: 0, before };
-    let sink = &mut MapSink::new(normal.codes_mut(), 3 * plan.size.width());
-    device_bake::run(device, &plan, &mut bands, &mut [sink])?;
-    Ok(normal)
+    let mut parallax = ParallaxMap::zeroed(plan.size, ParallaxFormat::default());
+    let normal_sink = &mut MapSink::new(normal.codes_mut(), 3 * plan.size.width());
+    let parallax_sink = &mut MapSink::new(parallax.codes_mut(), plan.size.width());
+    device_bake::run(device, &plan, &mut bands, &mut [normal_sink, parallax_sink])?;
+    Ok((normal, parallax))
 }
 
 #[test]

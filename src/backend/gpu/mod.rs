@@ -6,6 +6,8 @@ mod blend;
 mod device;
 #[cfg(test)]
 mod faults;
+#[cfg(test)]
+mod fused;
 mod hosted;
 mod input;
 mod kernel;

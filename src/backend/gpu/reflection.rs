@@ -6,9 +6,9 @@ use super::operation::{Operation, PARAMS_BYTES, WORKGROUP};
 use super::output::Output;
 use super::{Gpu, self_test};
 use crate::exact::Scale;
-use crate::map::{Channels, Convention, Depth, Encoding, HeightType, NormalFormat, Size};
+use crate::map::{Depth, Encoding, HeightType, NormalFormat, ParallaxFormat, Size};
 use crate::ops::Precision;
-use crate::ops::bake::{BakePlan, NormalOptions};
+use crate::ops::bake::{BakeOptions, BakePlan};
 use naga::{AddressSpace, ScalarKind, StorageAccess, TypeInner};
 use std::collections::BTreeSet;
 use std::mem::offset_of;
@@ -178,17 +178,30 @@ fn every_file_under_kernels_is_registered() {
     assert!(files >= ALL.len(), "{files} files");
 }
 
+/// A plan for a small map of heights.
+fn plan(
+    heights: HeightType,
+    normal: Option<(Encoding, Depth)>,
+    parallax: Option<(Encoding, Depth)>,
+    precision: Precision,
+) -> BakePlan {
+    let normal = normal.map(|(encoding, depth)| NormalFormat { encoding, depth, ..Default::default() });
+    let parallax = parallax.map(|(encoding, depth)| ParallaxFormat { encoding, depth });
+    let options = BakeOptions { normal, parallax, precision, scale: Scale::texels(3), ..Default::default() };
+    BakePlan::new(&options, Size::new(5, 5).unwrap(), heights).unwrap()
+}
+
+const UNORM8: Option<(Encoding, Depth)> = Some((Encoding::Unorm, Depth::Bits8));
+const SNORM16: Option<(Encoding, Depth)> = Some((Encoding::Snorm, Depth::Bits16));
+const HALF: Option<(Encoding, Depth)> = Some((Encoding::Float, Depth::Float16));
+
 #[test]
 fn constants_are_overrides_of_their_kernel() {
     let mut seen = BTreeSet::new();
-    for depth in [HeightType::U8, HeightType::U16, HeightType::F32] {
-        for (encoding, code_depth) in [(Encoding::Unorm, Depth::Bits8), (Encoding::Float, Depth::Float16)] {
+    for heights in [HeightType::U8, HeightType::U16, HeightType::F32] {
+        for (normal, parallax) in [(UNORM8, None), (HALF, None), (None, HALF), (UNORM8, SNORM16), (HALF, UNORM8)] {
             for precision in [Precision::Exact, Precision::Fast] {
-                let format =
-                    NormalFormat { encoding, depth: code_depth, channels: Channels::Xyz, convention: Convention::Gl };
-                let options = NormalOptions { format, precision, scale: Scale::texels(3), ..Default::default() };
-                let plan = BakePlan::new(&options.into(), Size::new(5, 5).unwrap(), depth).unwrap();
-                let kernel = plan.kernel();
+                let kernel = plan(heights, normal, parallax, precision).kernel();
                 let module = naga::front::wgsl::parse_str(&kernel.source.text()).unwrap();
                 let overrides: BTreeSet<_> = module.overrides.iter().filter_map(|(_, o)| o.name.clone()).collect();
                 let constants: BTreeSet<_> = kernel.constants.iter().map(|(name, _)| name.to_string()).collect();
@@ -218,5 +231,38 @@ fn a_device_that_computes_wrong_bytes_fails_its_self_test() {
         gpu.device.substitute(source, &text.replacen(from, to, 1));
         let error = self_test::run(&gpu.device).expect_err(source.name).to_string();
         assert!(error.contains("fails the self-test"), "{}: {error}", source.name);
+    }
+}
+
+#[test]
+fn a_kernel_that_computes_wrong_bytes_is_refused_before_its_first_job() {
+    let Ok(adapter) = super::adapters::select(Some("vulkan:llvmpipe")) else {
+        assert!(std::env::var_os("TEXBAKE_REQUIRE_GPU").is_none(), "no lavapipe");
+        return eprintln!("skipped: no lavapipe");
+    };
+    let exact = |heights, normal, parallax| plan(heights, normal, parallax, Precision::Exact);
+    for (plan, from, to) in [
+        (exact(HeightType::U8, UNORM8, UNORM8), "let a = params.z_over_m * ", "let a = 1u + params.z_over_m * "),
+        (exact(HeightType::U16, None, SNORM16), "product(params.z_over_m, ", "product(params.z_over_m + 1u, "),
+        (
+            exact(HeightType::U8, UNORM8, HALF),
+            "nearest_float(PARALLAX_BITS, negative",
+            "nearest_float(PARALLAX_BITS, !negative",
+        ),
+        (exact(HeightType::U16, UNORM8, SNORM16), "nearest_code96(params.parallax, ", "nearest_code96(params.normal, "),
+        (exact(HeightType::U8, UNORM8, SNORM16), "1u, PARALLAX_BITS), parallaxes", "1u, NORMAL_BITS), parallaxes"),
+        (exact(HeightType::F32, UNORM8, UNORM8), "min(height, ONE)", "height"),
+        (exact(HeightType::F32, None, HALF), "(height & SIGN) != 0u", "false"),
+    ] {
+        let kernel = plan.kernel();
+        let text = kernel.source.text();
+        assert!(text.contains(from), "{}: no {from:?}", kernel.source.name);
+        let gpu = Gpu { device: super::Device::open(&adapter).unwrap() };
+        self_test::accept_bake(&gpu.device, &plan).unwrap();
+        let gpu = Gpu { device: super::Device::open(&adapter).unwrap() };
+        gpu.device.substitute(kernel.source, &text.replacen(from, to, 1));
+        let error = gpu.accept_bake(&plan).expect_err(from).to_string();
+        assert!(error.contains("fails the self-test: bake: wrong"), "{from}: {error}");
+        assert!(!gpu.device.is_tested(&kernel), "{from}");
     }
 }

@@ -89,14 +89,23 @@ fn filled(
     Ok(maps)
 }
 
-/// Noise of a height type; floats of every exponent and both signs, subnormals included.
+/// Noise of a height type: above of every height, floats of every exponent and both signs, subnormals included; below
+/// in squares of four texels, flat inside, floats from -1 to 3, so that normals of any scale point up and lean.
 fn noise(height_type: HeightType) -> Result<HeightMap> {
-    let bits = |x: usize, y: usize| scrambled((y * WIDTH + x) as u32);
+    let is_flat = |y: usize| y >= HEIGHT / 2;
+    let bits = |x: usize, y: usize| {
+        let (x, y) = if is_flat(y) { (x / 4, y / 4 * 4) } else { (x, y) };
+        scrambled((y * WIDTH + x) as u32)
+    };
     Ok(match height_type {
         HeightType::U8 => Grid::from_fn(WIDTH, HEIGHT, |x, y| (bits(x, y) >> 24) as u8)?.into(),
         HeightType::U16 => Grid::from_fn(WIDTH, HEIGHT, |x, y| (bits(x, y) >> 16) as u16)?.into(),
-        // The mask leaves out infinities and NaN.
-        HeightType::F32 => Grid::from_fn(WIDTH, HEIGHT, |x, y| f32::from_bits(bits(x, y) & 0xff7f_ffff))?.try_into()?,
+        HeightType::F32 => Grid::from_fn(WIDTH, HEIGHT, |x, y| match is_flat(y) {
+            true => (bits(x, y) >> 8) as f32 / 4_194_304.0 - 1.0,
+            // The mask leaves out infinities and NaN.
+            false => f32::from_bits(bits(x, y) & 0xff7f_ffff),
+        })?
+        .try_into()?,
     })
 }
 
