@@ -124,7 +124,7 @@ fn number(method: BlendMethod) -> u32 {
 }
 
 /// `S_BITS` of kernels/blend/integers.wgsl: the fewest that are enough for every texel.
-fn s_bits(plan: &BlendPlan) -> u32 {
+pub(super) fn s_bits(plan: &BlendPlan) -> u32 {
     let (Some(scales), Some(rounding)) = (plan.integer_scales(), CodeRounding::new(plan.format.texel())) else {
         return 128;
     };
@@ -140,7 +140,7 @@ fn s_bits(plan: &BlendPlan) -> u32 {
 }
 
 /// The greatest magnitudes of X or Y and of Z, and of every product on the way there (`blend_integers`).
-fn greatest_parts(plan: &BlendPlan, [l1, l2]: [u128; 2]) -> [u128; 2] {
+pub(super) fn greatest_parts(plan: &BlendPlan, [l1, l2]: [u128; 2]) -> [u128; 2] {
     let parts = |leaning, z| [leaning * l1 * l2, z * l1 * l2];
     match (plan.method, plan.mask) {
         (BlendMethod::Masked, Some(mask)) => parts(mask.greatest.into(), mask.greatest.into()),

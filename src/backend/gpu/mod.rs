@@ -11,6 +11,8 @@ mod fused;
 mod hosted;
 mod input;
 mod kernel;
+#[cfg(test)]
+mod layer_tests;
 mod layers;
 mod operation;
 mod output;

@@ -1,10 +1,10 @@
 //! The kernels held against the host by naga's reflection, and sabotage that must be caught.
 
-use super::bake;
-use super::kernel::{ALL, BAKE_FLOAT_HEIGHTS, BAKE_INTEGER_HEIGHTS, KernelSource};
+use super::input::Input;
+use super::kernel::{ALL, BAKE_FLOAT_HEIGHTS, BAKE_INTEGER_HEIGHTS, Kernel, KernelSource};
 use super::operation::{Operation, PARAMS_BYTES, WORKGROUP};
 use super::output::Output;
-use super::{Gpu, self_test};
+use super::{Gpu, bake, blend, layer_tests, parallax, self_test};
 use crate::exact::Scale;
 use crate::map::{Depth, Encoding, HeightType, NormalFormat, ParallaxFormat, Size};
 use crate::ops::Precision;
@@ -52,6 +52,15 @@ impl Field for Output {
     }
 }
 
+impl Field for Input {
+    fn words(name: &str, offset: u32) -> Vec<Word> {
+        let words = words! {
+            Input: place row_words flip factor centre greatest over_greatest green
+        };
+        words.into_iter().map(|(word, at, kind)| (format!("{name}.{word}"), offset + at, kind)).collect()
+    }
+}
+
 /// The host's parameters of a kernel, and their bytes.
 fn host_params(entry_point: &str) -> (Vec<Word>, usize) {
     match entry_point {
@@ -61,6 +70,14 @@ fn host_params(entry_point: &str) -> (Vec<Word>, usize) {
                     px py z_low z_high z_over_m kx ky centre outer alpha normal parallax
             },
             size_of::<bake::Params>(),
+        ),
+        "blend" => (
+            words! { blend::Params: width rows marks nonce a b q reserved base detail mask normal },
+            size_of::<blend::Params>(),
+        ),
+        "parallax" => (
+            words! { parallax::Params: width rows marks nonce heights normals parallax },
+            size_of::<parallax::Params>(),
         ),
         other => panic!("the host knows no parameters of {other}"),
     }
@@ -197,18 +214,21 @@ const HALF: Option<(Encoding, Depth)> = Some((Encoding::Float, Depth::Float16));
 
 #[test]
 fn constants_are_overrides_of_their_kernel() {
-    let mut seen = BTreeSet::new();
+    let mut kernels = layer_tests::kernels();
     for heights in [HeightType::U8, HeightType::U16, HeightType::F32] {
         for (normal, parallax) in [(UNORM8, None), (HALF, None), (None, HALF), (UNORM8, SNORM16), (HALF, UNORM8)] {
             for precision in [Precision::Exact, Precision::Fast] {
-                let kernel = plan(heights, normal, parallax, precision).kernel();
-                let module = naga::front::wgsl::parse_str(&kernel.source.text()).unwrap();
-                let overrides: BTreeSet<_> = module.overrides.iter().filter_map(|(_, o)| o.name.clone()).collect();
-                let constants: BTreeSet<_> = kernel.constants.iter().map(|(name, _)| name.to_string()).collect();
-                assert_eq!(constants, overrides, "{}", kernel.source.name);
-                seen.insert(kernel.source.name);
+                kernels.push(plan(heights, normal, parallax, precision).kernel());
             }
         }
+    }
+    let mut seen = BTreeSet::new();
+    for Kernel { source, constants } in kernels {
+        let module = naga::front::wgsl::parse_str(&source.text()).unwrap();
+        let overrides: BTreeSet<_> = module.overrides.iter().filter_map(|(_, o)| o.name.clone()).collect();
+        let constants: BTreeSet<_> = constants.iter().map(|(name, _)| name.to_string()).collect();
+        assert_eq!(constants, overrides, "{}", source.name);
+        seen.insert(source.name);
     }
     assert_eq!(seen.len(), ALL.len(), "{seen:?}");
 }

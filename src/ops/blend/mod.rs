@@ -9,4 +9,6 @@ mod reference;
 
 pub use options::{BlendInputs, BlendMethod, BlendOptions};
 pub(crate) use plan::BlendPlan;
+#[cfg(test)]
+pub(crate) use reference::blend_integers;
 pub(crate) use reference::codes_of_layers;
