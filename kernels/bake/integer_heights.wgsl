@@ -1,6 +1,7 @@
 // Integer heights, correctly rounded: A / sqrt(S) with S = X^2 + Y^2 + Z^2 (DESIGN 3.1).
 //
-// A is X, Y, Z of the normal and Z (2H - M) / M of the parallax map.
+// A is X, Y, Z of the normal and Z (2H - M) / M of the parallax map. Their codes (fn normal_code, fn parallax_code) are
+// those of integers.wgsl or of floats.wgsl.
 
 // Whether all codes are integers, and m A, m^2 S and t^2 S always fit 32, 64 and 64 bits.
 override NARROW: bool = false;
@@ -59,22 +60,6 @@ fn wide_texel(g: vec2<i32>, height: i32) -> Texel {
         texel.parallax = parallax_code(height < 0, float64(a) * scale, square96(a), s);
     }
     return texel;
-}
-
-// The code of sqrt(aa / s), or of its negative, in the normal map. `estimate` is nearly sqrt(aa / s).
-fn normal_code(negative: bool, estimate: f32, aa: vec3<u32>, s: vec3<u32>) -> u32 {
-    if (NORMAL_IS_FLOAT) {
-        return nearest_float(NORMAL_BITS, negative, estimate, vec4(aa, 0u), vec4(s, 0u));
-    }
-    return nearest_code96(params.normal, negative, estimate, aa, s);
-}
-
-// The same in the parallax map.
-fn parallax_code(negative: bool, estimate: f32, aa: vec3<u32>, s: vec3<u32>) -> u32 {
-    if (PARALLAX_IS_FLOAT) {
-        return nearest_float(PARALLAX_BITS, negative, estimate, vec4(aa, 0u), vec4(s, 0u));
-    }
-    return nearest_code96(params.parallax, negative, estimate, aa, s);
 }
 
 // Whether px Gx and py Gy are below zero, or zero: a zero's sign does not matter.

@@ -1,7 +1,7 @@
 //! The bake kernel's host side: which text, which constants, which parameters.
 
 use super::device::Device;
-use super::kernel::{BAKE_FAST, BAKE_FLOAT_HEIGHTS, BAKE_INTEGER_HEIGHTS, Kernel};
+use super::kernel::{BAKE_FAST, BAKE_FLOAT_HEIGHTS, BAKE_FLOATS, BAKE_INTEGERS, Kernel};
 use super::operation::{Layer, Operation, Places, row_bytes};
 use super::output::{Output, bits};
 use super::transfer::Transfer;
@@ -96,7 +96,8 @@ pub(super) fn kernel(plan: &BakePlan, normal_codes: usize, marked: bool) -> Kern
     let source = match (plan.precision, plan.slope) {
         (Precision::Fast, _) => BAKE_FAST,
         (Precision::Exact, Slope::Float(_)) => BAKE_FLOAT_HEIGHTS,
-        (Precision::Exact, Slope::Integer(_)) => BAKE_INTEGER_HEIGHTS,
+        (Precision::Exact, Slope::Integer(_)) if plan.outputs().any(|format| format.depth.is_float()) => BAKE_FLOATS,
+        (Precision::Exact, Slope::Integer(_)) => BAKE_INTEGERS,
     };
     let normal_depth = plan.normal.unwrap_or_default().depth;
     let parallax_depth = plan.parallax.map(|format| format.depth);
@@ -109,7 +110,7 @@ pub(super) fn kernel(plan: &BakePlan, normal_codes: usize, marked: bool) -> Kern
         ("PARALLAX_IS_FLOAT", parallax_depth.is_some_and(Depth::is_float).into()),
         ("MARKED", marked.into()),
     ];
-    if source == BAKE_INTEGER_HEIGHTS {
+    if [BAKE_INTEGERS, BAKE_FLOATS].contains(&source) {
         constants.push(("NARROW", fits_64_bits(plan).into()));
     }
     Kernel { source, constants }

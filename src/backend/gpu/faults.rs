@@ -1,7 +1,7 @@
 //! Faults, really caused: each must end as an error that says what happened, and none with a wrong row.
 
 use super::device::Device;
-use super::kernel::BAKE_INTEGER_HEIGHTS;
+use super::kernel::BAKE_INTEGERS;
 use super::{Gpu, adapters, bake as device_bake};
 use crate::backend::Backend;
 use crate::error::Result;
@@ -61,9 +61,9 @@ fn rows_that_were_not_computed_are_noticed() {
         ("a mark of another dispatch", "= params.nonce;", "= params.nonce - 2u;", 0),
     ] {
         let Some(device) = lavapipe() else { return };
-        let text = BAKE_INTEGER_HEIGHTS.text();
+        let text = BAKE_INTEGERS.text();
         assert!(text.contains(from), "{what}");
-        device.substitute(BAKE_INTEGER_HEIGHTS, &text.replacen(from, to, 1));
+        device.substitute(BAKE_INTEGERS, &text.replacen(from, to, 1));
         let error = bake(&device, |_| ()).expect_err(what).to_string();
         assert!(error.ends_with(&format!(": row {row} of a band came back without having been computed")), "{error}");
     }

@@ -30,6 +30,8 @@ pub(crate) struct Kernel {
 
 const BAKE: &str = include_str!("../../../kernels/bake.wgsl");
 const INTEGER_HEIGHTS: &str = include_str!("../../../kernels/bake/integer_heights.wgsl");
+const INTEGERS: &str = include_str!("../../../kernels/bake/integers.wgsl");
+const FLOATS: &str = include_str!("../../../kernels/bake/floats.wgsl");
 const FLOAT_HEIGHTS: &str = include_str!("../../../kernels/bake/float_heights.wgsl");
 const FAST: &str = include_str!("../../../kernels/bake/fast.wgsl");
 const BLEND: &str = include_str!("../../../kernels/blend.wgsl");
@@ -54,10 +56,15 @@ const UNIT: &str = include_str!("../../../kernels/shared/unit.wgsl");
 const FLOAT_PARALLAX: &str = include_str!("../../../kernels/shared/float_parallax.wgsl");
 const FAST_CODE: &str = include_str!("../../../kernels/shared/fast_code.wgsl");
 
-pub(crate) const BAKE_INTEGER_HEIGHTS: KernelSource = KernelSource {
-    name: "bake, integer heights",
+pub(crate) const BAKE_INTEGERS: KernelSource = KernelSource {
+    name: "bake, integer heights to integer codes",
     entry_point: "bake",
-    files: &[BAKE, INTEGER_HEIGHTS, HEIGHTS, CODES, NEAREST_CODE, NEAREST_FLOAT, WIDE, SOFT_FLOAT],
+    files: &[BAKE, INTEGER_HEIGHTS, INTEGERS, HEIGHTS, CODES, NEAREST_CODE, WIDE],
+};
+pub(crate) const BAKE_FLOATS: KernelSource = KernelSource {
+    name: "bake, integer heights to floats",
+    entry_point: "bake",
+    files: &[BAKE, INTEGER_HEIGHTS, FLOATS, HEIGHTS, CODES, NEAREST_CODE, NEAREST_FLOAT, WIDE, SOFT_FLOAT],
 };
 pub(crate) const BAKE_FLOAT_HEIGHTS: KernelSource = KernelSource {
     name: "bake, float heights",
@@ -102,8 +109,9 @@ pub(crate) const PARALLAX_FAST: KernelSource = KernelSource {
 
 /// Every kernel that a backend may run.
 #[cfg(test)]
-pub(crate) const ALL: [KernelSource; 9] = [
-    BAKE_INTEGER_HEIGHTS,
+pub(crate) const ALL: [KernelSource; 10] = [
+    BAKE_INTEGERS,
+    BAKE_FLOATS,
     BAKE_FLOAT_HEIGHTS,
     BAKE_FAST,
     BLEND_INTEGERS,

@@ -1,7 +1,7 @@
 //! The kernels held against the host by naga's reflection, and sabotage that must be caught.
 
 use super::input::Input;
-use super::kernel::{ALL, BAKE_FLOAT_HEIGHTS, BAKE_INTEGER_HEIGHTS, Kernel, KernelSource};
+use super::kernel::{ALL, BAKE_FLOAT_HEIGHTS, BAKE_FLOATS, BAKE_INTEGERS, Kernel, KernelSource};
 use super::operation::{Operation, PARAMS_BYTES, WORKGROUP};
 use super::output::Output;
 use super::{Gpu, bake, blend, layer_tests, parallax, self_test};
@@ -240,9 +240,9 @@ fn a_device_that_computes_wrong_bytes_fails_its_self_test() {
         return eprintln!("skipped: no lavapipe");
     };
     for (source, from, to) in [
-        (BAKE_INTEGER_HEIGHTS, "let ma = u32(output.code_m) * a", "let ma = u32(output.code_m + 1) * a"),
-        (BAKE_INTEGER_HEIGHTS, "times96(aa, u32(output.code_m)", "times96(aa, u32(output.code_m + 1)"),
-        (BAKE_INTEGER_HEIGHTS, "let inexact = u32(", "let inexact = 0u * u32("),
+        (BAKE_INTEGERS, "let ma = u32(output.code_m) * a", "let ma = u32(output.code_m + 1) * a"),
+        (BAKE_INTEGERS, "times96(aa, u32(output.code_m)", "times96(aa, u32(output.code_m + 1)"),
+        (BAKE_FLOATS, "let inexact = u32(", "let inexact = 0u * u32("),
         (BAKE_FLOAT_HEIGHTS, "((n >> 3u) & 1u) > 4u", "((n >> 3u) & 1u) > 5u"),
     ] {
         let text = source.text();
