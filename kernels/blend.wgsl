@@ -1,8 +1,8 @@
 // Two normal maps to one: the normals of one band of rows.
 //
-// In:  inputs, raw words: two normal maps and, perhaps, a mask, a code of it for each texel; rows begin on words and are
-//      padded to four texels.
-// Out: outputs, raw words: the codes of each texel, the first lowest; rows padded to four texels.
+// In:  inputs, raw words: two normal maps and, perhaps, a mask, a code of it for each texel. Rows begin on words and
+//      are padded to four texels.
+// Out: outputs, raw words: the codes of each texel, the first lowest. Rows are padded to four texels.
 //      One word for each row, beyond the codes, says by which dispatch the row was computed.
 // An invocation computes four neighbouring texels of one row; no texel is written twice, and nothing is atomic.
 //

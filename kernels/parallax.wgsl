@@ -1,8 +1,8 @@
 // Heights and a normal map to a parallax map: the texels of one band of rows.
 //
-// In:  inputs, raw words: heights, one code for each texel, and a normal map; rows begin on words and are padded to four
-//      texels.
-// Out: outputs, raw words: a code for each texel, the first lowest; rows padded to four texels.
+// In:  inputs, raw words: heights, one code for each texel, and a normal map. Rows begin on words and are padded to
+//      four texels.
+// Out: outputs, raw words: a code for each texel, the first lowest. Rows are padded to four texels.
 //      One word for each row, beyond the codes, says by which dispatch the row was computed.
 // An invocation computes four neighbouring texels of one row; no texel is written twice, and nothing is atomic.
 //

@@ -3,13 +3,14 @@
 // Normals stand over L1 and L2, and what they become over what makes it an integer: the sum of both is multiplied by
 // L1 L2, or q L1 L2, and so on.
 
-// What S always fits. 64: m A, m^2 S and t^2 S fit 32, 64 and 64 bits; 96: |A| < 2^48; 128: |A| < 2^53.
+// What S always fits. 64: codes are integers, and m A, m^2 S and t^2 S fit 32, 64 and 64 bits; 96: |A| < 2^48;
+// 128: |A| < 2^53.
 override S_BITS: u32 = 128u;
 
 fn blended_codes(base: vec3<u32>, detail: vec3<u32>, weights: vec3<i32>) -> vec3<u32> {
     let v1 = integer_normal(params.base, BASE_CODES, base);
     let v2 = integer_normal(params.detail, DETAIL_CODES, detail);
-    if (S_BITS == 64u && !NORMAL_IS_FLOAT) {
+    if (S_BITS == 64u) {
         return narrow_codes(narrow_sum(v1, v2, weights));
     }
     if (METHOD == RNM) {

@@ -3,7 +3,7 @@
 use super::blend::{greatest_parts, s_bits};
 use super::device::Device;
 use super::kernel::Kernel;
-use super::layers::{LayerOperation, accept};
+use super::layers::{LayerOperation, accept, compare};
 use super::operation::Operation;
 use crate::exact::Rational;
 use crate::map::{Channels, Convention, Depth, Encoding, HeightType, NormalFormat, ParallaxFormat, Size};
@@ -211,5 +211,22 @@ fn a_parallax_map_of_wrong_bytes_is_refused_before_its_first_job() {
         (parallax(HeightType::F32, FLOAT16, UNORM8), "unit(normal).z", "unit(normal).y"),
     ] {
         assert_noticed(&honest, &adapter, &plan, from, to);
+    }
+}
+
+#[test]
+fn any_size_in_any_bands_is_the_references() {
+    let Some((device, _)) = lavapipe() else { return };
+    let blend = masked([UNORM8, xy(UNORM16), SNORM8], HeightType::U8);
+    let floats = masked([xy(FLOAT16), FLOAT32, xy(UNORM16)], HeightType::U16);
+    let parallax = parallax(HeightType::U8, UNORM16, UNORM8);
+    for (width, height) in [(1, 1), (2, 3), (3, 1), (4, 5), (5, 2), (255, 7), (256, 1), (257, 9), (1030, 2)] {
+        let size = Size::new(width, height).unwrap();
+        // More bands than are in flight, and one.
+        for band_rows in [1, 2, height] {
+            compare(&device, &blend, size, band_rows).unwrap();
+            compare(&device, &floats, size, band_rows).unwrap();
+            compare(&device, &parallax, size, band_rows).unwrap();
+        }
     }
 }

@@ -52,10 +52,14 @@ pub(super) fn accept(device: &Device, operation: &impl LayerOperation) -> Result
     if operation.precision() == Precision::Fast || device.is_tested(&operation.kernel()) {
         return Ok(());
     }
-    let size = Size::new(WIDTH, HEIGHT)?;
+    compare(device, operation, Size::new(WIDTH, HEIGHT)?, HEIGHT / 2)
+}
+
+/// Runs an operation on noise of `size`, on the device and by the reference.
+pub(super) fn compare(device: &Device, operation: &impl LayerOperation, size: Size, band_rows: usize) -> Result<()> {
     let (operation, formats) = (operation.of_size(size), operation.layers());
     let maps: Vec<Codes> = formats.iter().zip(1..).map(|(format, seed)| noise(*format, size, seed)).collect();
-    let bands = || MapLayers::new(maps.iter().map(Codes::as_ref).collect(), HEIGHT, HEIGHT / 2);
+    let bands = || MapLayers::new(maps.iter().map(Codes::as_ref).collect(), size.height(), band_rows);
     let inputs = formats.iter().map(|format| format!("{} codes of {} bits", format.encoding, format.depth));
     test(device, &operation, size, &inputs.collect::<Vec<_>>().join(" and "), |by| match by {
         By::Device(sinks) => run(device, &operation, &mut bands(), sinks),
