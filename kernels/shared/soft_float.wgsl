@@ -7,6 +7,18 @@
 
 const SIGN: u32 = 0x80000000u;
 
+const ONE: u32 = 0x3f800000u;
+
+// The bits of a small integer or half of one: native arithmetic is exact on those.
+fn bits_of(a: f32) -> u32 {
+    return bitcast<u32>(a);
+}
+
+// a, or zero if its magnitude is below `least`.
+fn zero_below(least: u32, a: u32) -> u32 {
+    return select(a, 0u, (a & ~SIGN) < least);
+}
+
 fn exponent_of(a: u32) -> i32 {
     return i32((a >> 23u) & 0xffu);
 }

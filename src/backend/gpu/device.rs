@@ -1,8 +1,7 @@
 //! An open device: its compiled kernels, its buffers, and what went wrong on it.
 
 use super::adapters::describe;
-use super::kernel::KernelSource;
-use super::normal::NormalKernel;
+use super::kernel::{Kernel, KernelSource};
 use super::slot::Slot;
 use crate::error::{Error, Result};
 use std::any::Any;
@@ -24,11 +23,11 @@ pub(crate) struct Device {
     pub queue: wgpu::Queue,
     layout: BindGroupLayout,
     modules: Mutex<HashMap<KernelSource, ShaderModule>>,
-    pipelines: Mutex<HashMap<NormalKernel, ComputePipeline>>,
+    pipelines: Mutex<HashMap<Kernel, ComputePipeline>>,
     idle: Mutex<Vec<Slot>>,
     next_nonce: AtomicU32,
     /// Kernels whose bytes were compared with the reference's.
-    tested: Mutex<HashSet<NormalKernel>>,
+    tested: Mutex<HashSet<Kernel>>,
     /// Why the device cannot be used any more.
     lost: Arc<OnceLock<String>>,
 }
@@ -121,12 +120,12 @@ impl Device {
     }
 
     /// Whether a kernel has passed its test; the caller tests it otherwise.
-    pub fn is_tested(&self, kernel: &NormalKernel) -> bool {
+    pub fn is_tested(&self, kernel: &Kernel) -> bool {
         lock(&self.tested).contains(kernel)
     }
 
     /// Remembers that a kernel has passed its test.
-    pub fn set_tested(&self, kernel: NormalKernel) {
+    pub fn set_tested(&self, kernel: Kernel) {
         lock(&self.tested).insert(kernel);
     }
 
@@ -136,7 +135,7 @@ impl Device {
     }
 
     /// The compiled kernel; compiled once per device and choice of constants.
-    pub fn pipeline(&self, kernel: &NormalKernel) -> ComputePipeline {
+    pub fn pipeline(&self, kernel: &Kernel) -> ComputePipeline {
         lock(&self.pipelines).entry(kernel.clone()).or_insert_with(|| self.compile(kernel)).clone()
     }
 
@@ -149,7 +148,7 @@ impl Device {
         lock(&self.modules).insert(source, module);
     }
 
-    fn compile(&self, kernel: &NormalKernel) -> ComputePipeline {
+    fn compile(&self, kernel: &Kernel) -> ComputePipeline {
         let source = kernel.source;
         let module = lock(&self.modules)
             .entry(source)
@@ -163,28 +162,29 @@ impl Device {
             bind_group_layouts: &[Some(&self.layout)],
             ..Default::default()
         });
+        let constants: Vec<_> = kernel.constants.iter().map(|&(name, value)| (name, f64::from(value))).collect();
         self.device.create_compute_pipeline(&ComputePipelineDescriptor {
             label: Some(source.name),
             layout: Some(&layout),
             module: &module,
             entry_point: Some(source.entry_point),
-            compilation_options: PipelineCompilationOptions { constants: &kernel.constants(), ..Default::default() },
+            compilation_options: PipelineCompilationOptions { constants: &constants, ..Default::default() },
             cache: None,
         })
     }
 
-    /// Parameters, heights and codes, as every kernel binds them.
+    /// Parameters, inputs and outputs, as every kernel binds them.
     pub fn bind(
         &self,
         params: BindingResource<'_>,
-        heights: BindingResource<'_>,
-        codes: BindingResource<'_>,
+        inputs: BindingResource<'_>,
+        outputs: BindingResource<'_>,
     ) -> BindGroup {
         let entry = |binding, resource| BindGroupEntry { binding, resource };
         self.device.create_bind_group(&BindGroupDescriptor {
             label: Some("texbake"),
             layout: &self.layout,
-            entries: &[entry(0, params), entry(1, heights), entry(2, codes)],
+            entries: &[entry(0, params), entry(1, inputs), entry(2, outputs)],
         })
     }
 
@@ -195,16 +195,16 @@ impl Device {
         self.device.create_buffer_init(&BufferInitDescriptor { label: Some("params"), contents: bytes, usage })
     }
 
-    /// A slot of earlier bakes that holds this many bytes of heights and codes, or a new one.
-    pub fn slot(&self, heights_bytes: u64, codes_bytes: u64) -> Slot {
+    /// A slot of earlier jobs that holds this many bytes of inputs and outputs, or a new one.
+    pub fn slot(&self, input_bytes: u64, output_bytes: u64) -> Slot {
         let mut idle = lock(&self.idle);
-        match idle.iter().position(|slot| slot.holds(heights_bytes, codes_bytes)) {
+        match idle.iter().position(|slot| slot.holds(input_bytes, output_bytes)) {
             Some(index) => idle.swap_remove(index),
             None => {
                 // A slot that is too small would never be used again by a set of equal maps.
                 idle.pop();
                 drop(idle);
-                Slot::new(&self.device, heights_bytes, codes_bytes)
+                Slot::new(&self.device, input_bytes, output_bytes)
             }
         }
     }
@@ -215,7 +215,7 @@ impl Device {
         self.next_nonce.fetch_add(2, Ordering::Relaxed)
     }
 
-    /// Keeps a slot for the next bake.
+    /// Keeps a slot for the next job.
     pub fn keep(&self, slot: Slot) {
         lock(&self.idle).push(slot);
     }

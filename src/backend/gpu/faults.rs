@@ -1,12 +1,11 @@
 //! Faults, really caused: each must end as an error that says what happened, and none with a wrong row.
 
 use super::device::Device;
-use super::kernel::NORMAL_INTEGER_CODES;
-use super::transfer::Transfer;
-use super::{Gpu, adapters};
+use super::kernel::BAKE_INTEGERS;
+use super::{Gpu, adapters, bake as device_bake};
 use crate::backend::Backend;
 use crate::error::Result;
-use crate::map::{Edge, Grid, HeightMap, HeightType, NormalFormat, NormalMap, Size};
+use crate::map::{Edge, Grid, HeightMap, HeightType, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Size};
 use crate::ops::bake::{BakeOptions, BakePlan};
 use crate::stream::{HeightBand, HeightBands, MapBands, MapSink};
 
@@ -25,11 +24,12 @@ fn map() -> HeightMap {
 }
 
 fn plan(map: &HeightMap) -> BakePlan {
-    BakePlan::new(&BakeOptions::default(), map.size(), map.height_type()).unwrap()
+    let options = BakeOptions { parallax: Some(ParallaxFormat::default()), ..Default::default() };
+    BakePlan::new(&options, map.size(), map.height_type()).unwrap()
 }
 
-/// Bakes in bands of eight rows; before each band `before` is told which one it is.
-fn bake(device: &Device, before: impl FnMut(usize)) -> Result<NormalMap> {
+/// Bakes a normal and a parallax map in bands of eight rows; before each band `before` is told which one it is.
+fn bake(device: &Device, before: impl FnMut(usize)) -> Result<(NormalMap, ParallaxMap)> {
     struct Told<'a, F> {
         bands: MapBands<'a>,
         count: usize,
@@ -46,8 +46,11 @@ fn bake(device: &Device, before: impl FnMut(usize)) -> Result<NormalMap> {
     let plan = plan(&map);
     let mut normal = NormalMap::zeroed(plan.size, NormalFormat::default());
     let mut bands = Told { bands: MapBands::new(&map, Edge::Wrap, 8), count: 0, before };
-    Transfer::new(device, &plan)?.run(&mut bands, &mut MapSink::new(normal.codes_mut(), 3 * plan.size.width()))?;
-    Ok(normal)
+    let mut parallax = ParallaxMap::zeroed(plan.size, ParallaxFormat::default());
+    let normal_sink = &mut MapSink::new(normal.codes_mut(), 3 * plan.size.width());
+    let parallax_sink = &mut MapSink::new(parallax.codes_mut(), plan.size.width());
+    device_bake::run(device, &plan, &mut bands, &mut [normal_sink, parallax_sink])?;
+    Ok((normal, parallax))
 }
 
 #[test]
@@ -58,9 +61,9 @@ fn rows_that_were_not_computed_are_noticed() {
         ("a mark of another dispatch", "= params.nonce;", "= params.nonce - 2u;", 0),
     ] {
         let Some(device) = lavapipe() else { return };
-        let text = NORMAL_INTEGER_CODES.text();
+        let text = BAKE_INTEGERS.text();
         assert!(text.contains(from), "{what}");
-        device.substitute(NORMAL_INTEGER_CODES, &text.replacen(from, to, 1));
+        device.substitute(BAKE_INTEGERS, &text.replacen(from, to, 1));
         let error = bake(&device, |_| ()).expect_err(what).to_string();
         assert!(error.ends_with(&format!(": row {row} of a band came back without having been computed")), "{error}");
     }

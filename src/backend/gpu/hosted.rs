@@ -1,7 +1,9 @@
 //! Bakes inside somebody else's program: its device, its buffers and textures, its command encoder.
 
+use super::bake;
 use super::device::Device;
-use super::normal::{self, NormalKernel, Params, heights_row_bytes};
+use super::kernel::Kernel;
+use super::operation::{Operation, Places, Rows, row_bytes};
 use super::transfer::dispatch;
 use super::{GREATEST_DISPATCH, Gpu, adapters, self_test};
 use crate::error::{Error, Result};
@@ -62,6 +64,7 @@ pub enum CodeTarget<'a> {
 pub struct NormalBake<'a> {
     device: &'a Device,
     plan: BakePlan,
+    format: NormalFormat,
 }
 
 /// Rows of a texture copy begin at multiples of this.
@@ -89,7 +92,8 @@ impl Hosted {
     /// in one binding.
     pub fn normal(&self, size: Size, height_type: HeightType, options: &NormalOptions) -> Result<NormalBake<'_>> {
         let device = &self.gpu.device;
-        let bake = NormalBake { device, plan: BakePlan::new(&(*options).into(), size, height_type)? };
+        let plan = BakePlan::new(&(*options).into(), size, height_type)?;
+        let bake = NormalBake { device, plan, format: options.format };
         let rows =
             [bake.heights_row_bytes(), bake.codes_row_bytes()].map(|bytes| bytes.next_multiple_of(COPY_ROW_BYTES));
         let greatest = device.greatest_binding();
@@ -98,11 +102,10 @@ impl Hosted {
                 format!("a map of {size} texels exceeds its bindings of {greatest} bytes; request higher limits");
             return Err(device.error(reason));
         }
-        self.gpu.accept(&bake.plan)?;
-        let channels = normal::format(&bake.plan).channels.count();
+        self.gpu.accept_bake(&bake.plan)?;
         device.guarded(|| {
-            for codes_per_texel in [channels, texture_channels(normal::format(&bake.plan))] {
-                device.pipeline(&NormalKernel::new(&bake.plan, codes_per_texel, false));
+            for codes_per_texel in [bake.format.channels.count(), texture_channels(bake.format)] {
+                device.pipeline(&bake.kernel(codes_per_texel));
             }
             Ok(())
         })?;
@@ -113,12 +116,12 @@ impl Hosted {
 impl NormalBake<'_> {
     /// Bytes from one row of heights to the next in a buffer: four texels make whole words.
     pub fn heights_row_bytes(&self) -> usize {
-        heights_row_bytes(self.plan.size.width(), self.plan.height_type)
+        row_bytes(self.plan.size.width(), self.plan.height_type.bytes())
     }
 
     /// Bytes from one row of codes to the next in a buffer: four texels make whole words.
     pub fn codes_row_bytes(&self) -> usize {
-        self.kernel(normal::format(&self.plan).channels.count()).codes_row_bytes(self.plan.size.width())
+        self.row_bytes_of_codes(self.format.channels.count())
     }
 
     /// Records the bake. The map is complete when the encoder's commands have run.
@@ -132,13 +135,18 @@ impl NormalBake<'_> {
             let heights = self.heights_on_device(encoder, heights);
             match codes {
                 CodeTarget::Buffer(slice) => {
-                    let kernel = self.kernel(normal::format(&self.plan).channels.count());
-                    self.dispatch(encoder, &kernel, &heights, &Rows::of(slice, self.codes_row_bytes()));
+                    let codes_per_texel = self.format.channels.count();
+                    self.dispatch(
+                        encoder,
+                        &self.kernel(codes_per_texel),
+                        &heights,
+                        &BufferRows::of(slice, self.codes_row_bytes()),
+                    );
                 }
                 CodeTarget::Texture(texture) => {
-                    let kernel = self.kernel(texture_channels(normal::format(&self.plan)));
-                    let codes = self.scratch("codes", kernel.codes_row_bytes(self.plan.size.width()));
-                    self.dispatch(encoder, &kernel, &heights, &codes);
+                    let codes_per_texel = texture_channels(self.format);
+                    let codes = self.scratch("codes", self.row_bytes_of_codes(codes_per_texel));
+                    self.dispatch(encoder, &self.kernel(codes_per_texel), &heights, &codes);
                     encoder.copy_buffer_to_texture(codes.layout(), texture.as_image_copy(), extent(self.plan.size));
                 }
             }
@@ -163,19 +171,23 @@ impl NormalBake<'_> {
             }
             CodeTarget::Texture(texture) => {
                 check_size("codes texture", texture, plan.size)?;
-                check_format("codes texture", texture, codes_formats(normal::format(plan)), TextureUsages::COPY_DST)
+                check_format("codes texture", texture, codes_formats(self.format), TextureUsages::COPY_DST)
             }
         }
     }
 
-    fn kernel(&self, codes_per_texel: usize) -> NormalKernel {
-        NormalKernel::new(&self.plan, codes_per_texel, false)
+    fn kernel(&self, codes_per_texel: usize) -> Kernel {
+        bake::kernel(&self.plan, codes_per_texel, false)
+    }
+
+    fn row_bytes_of_codes(&self, codes_per_texel: usize) -> usize {
+        row_bytes(self.plan.size.width(), codes_per_texel * self.format.depth.bytes())
     }
 
     /// The heights as rows in a buffer.
-    fn heights_on_device(&self, encoder: &mut CommandEncoder, heights: HeightSource<'_>) -> Rows {
+    fn heights_on_device(&self, encoder: &mut CommandEncoder, heights: HeightSource<'_>) -> BufferRows {
         match heights {
-            HeightSource::Buffer(slice) => Rows::of(slice, self.heights_row_bytes()),
+            HeightSource::Buffer(slice) => BufferRows::of(slice, self.heights_row_bytes()),
             HeightSource::Texture(texture) => {
                 let rows = self.scratch("heights", self.heights_row_bytes());
                 encoder.copy_texture_to_buffer(texture.as_image_copy(), rows.layout(), extent(self.plan.size));
@@ -185,7 +197,7 @@ impl NormalBake<'_> {
     }
 
     /// A buffer for the bake's rows, to be copied from or to a texture; it lives as long as the recorded commands.
-    fn scratch(&self, label: &str, row_bytes: usize) -> Rows {
+    fn scratch(&self, label: &str, row_bytes: usize) -> BufferRows {
         let row_bytes = row_bytes.next_multiple_of(COPY_ROW_BYTES);
         let buffer = self.device.device.create_buffer(&BufferDescriptor {
             label: Some(label),
@@ -193,29 +205,29 @@ impl NormalBake<'_> {
             usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        Rows { buffer, offset: 0, row_bytes }
+        BufferRows { buffer, offset: 0, row_bytes }
     }
 
     /// Records the kernel over all rows, in as many dispatches as their number needs.
-    fn dispatch(&self, encoder: &mut CommandEncoder, kernel: &NormalKernel, heights: &Rows, codes: &Rows) {
-        let Self { device, plan } = self;
+    fn dispatch(&self, encoder: &mut CommandEncoder, kernel: &Kernel, heights: &BufferRows, codes: &BufferRows) {
+        let Self { device, plan, .. } = self;
         let (width, height) = (plan.size.width(), plan.size.height());
         let pipeline = device.pipeline(kernel);
-        let row_words = heights.row_bytes / 4;
-        let row_at = |row: isize| (plan.edges.y.resolve(row, height) * row_words) as u32;
+        let place = |rows: &BufferRows, row: usize| {
+            let words = rows.row_bytes / 4;
+            Rows { place: (row * words) as u32, words: words as u32 }
+        };
+        let heights_at = |row: isize| place(heights, plan.edges.y.resolve(row, height));
         for first in (0..height).step_by(GREATEST_DISPATCH) {
             let rows = GREATEST_DISPATCH.min(height - first);
-            let params = Params {
+            let [above, body, below] = [first as isize - 1, first as isize, (first + rows) as isize];
+            let places = Places {
                 rows: rows as u32,
-                above: row_at(first as isize - 1),
-                body: row_at(first as isize),
-                below: row_at((first + rows) as isize),
-                row_words: row_words as u32,
-                codes: (first * codes.row_bytes / 4) as u32,
-                codes_row_words: (codes.row_bytes / 4) as u32,
-                ..normal::params(plan)
+                inputs: vec![heights_at(above), heights_at(body), heights_at(below)],
+                outputs: vec![place(codes, first)],
+                ..Places::default()
             };
-            let uniform = device.uniform(bytemuck::bytes_of(&params));
+            let uniform = device.uniform(&plan.params(&places));
             let bindings = device.bind(uniform.as_entire_binding(), heights.binding(height), codes.binding(height));
             dispatch(encoder, &pipeline, &bindings, width, rows);
         }
@@ -223,13 +235,13 @@ impl NormalBake<'_> {
 }
 
 /// Rows in a buffer from an offset on.
-struct Rows {
+struct BufferRows {
     buffer: Buffer,
     offset: u64,
     row_bytes: usize,
 }
 
-impl Rows {
+impl BufferRows {
     fn of(slice: BufferSlice<'_>, row_bytes: usize) -> Self {
         Self { buffer: slice.buffer().clone(), offset: slice.offset(), row_bytes }
     }

@@ -20,39 +20,104 @@ impl KernelSource {
     }
 }
 
-const NORMAL: &str = include_str!("../../../kernels/normal.wgsl");
-const INTEGER_CODES: &str = include_str!("../../../kernels/normal/integer_codes.wgsl");
-const INTEGER_FLOATS: &str = include_str!("../../../kernels/normal/integer_floats.wgsl");
-const WIDE_NORMAL: &str = include_str!("../../../kernels/normal/wide_normal.wgsl");
-const FLOAT_HEIGHTS: &str = include_str!("../../../kernels/normal/float_heights.wgsl");
-const FAST: &str = include_str!("../../../kernels/normal/fast.wgsl");
+/// A kernel as it is compiled: its text, and the values of its overrides.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(crate) struct Kernel {
+    pub source: KernelSource,
+    /// Every override of the text; a bool is 0 or 1.
+    pub constants: Vec<(&'static str, u32)>,
+}
+
+const BAKE: &str = include_str!("../../../kernels/bake.wgsl");
+const INTEGER_HEIGHTS: &str = include_str!("../../../kernels/bake/integer_heights.wgsl");
+const INTEGERS: &str = include_str!("../../../kernels/bake/integers.wgsl");
+const FLOATS: &str = include_str!("../../../kernels/bake/floats.wgsl");
+const FLOAT_HEIGHTS: &str = include_str!("../../../kernels/bake/float_heights.wgsl");
+const FAST: &str = include_str!("../../../kernels/bake/fast.wgsl");
+const BLEND: &str = include_str!("../../../kernels/blend.wgsl");
+const BLENDED_INTEGERS: &str = include_str!("../../../kernels/blend/integers.wgsl");
+const BLENDED_FLOATS: &str = include_str!("../../../kernels/blend/floats.wgsl");
+const BLENDED_FAST: &str = include_str!("../../../kernels/blend/fast.wgsl");
+const PARALLAX: &str = include_str!("../../../kernels/parallax.wgsl");
+const INTEGER_MAPS: &str = include_str!("../../../kernels/parallax/integers.wgsl");
+const FLOAT_MAPS: &str = include_str!("../../../kernels/parallax/floats.wgsl");
+const FAST_MAPS: &str = include_str!("../../../kernels/parallax/fast.wgsl");
+const READ_CODES: &str = include_str!("../../../kernels/shared/read_codes.wgsl");
+const FLOAT_NORMALS: &str = include_str!("../../../kernels/shared/float_normals.wgsl");
+const FAST_NORMALS: &str = include_str!("../../../kernels/shared/fast_normals.wgsl");
 const HEIGHTS: &str = include_str!("../../../kernels/shared/heights.wgsl");
 const CODES: &str = include_str!("../../../kernels/shared/codes.wgsl");
+const NEAREST_CODE: &str = include_str!("../../../kernels/shared/nearest_code.wgsl");
+const NEAREST_FLOAT: &str = include_str!("../../../kernels/shared/nearest_float.wgsl");
 const WIDE: &str = include_str!("../../../kernels/shared/wide.wgsl");
+const SIGNED: &str = include_str!("../../../kernels/shared/signed.wgsl");
 const SOFT_FLOAT: &str = include_str!("../../../kernels/shared/soft_float.wgsl");
+const UNIT: &str = include_str!("../../../kernels/shared/unit.wgsl");
+const FLOAT_PARALLAX: &str = include_str!("../../../kernels/shared/float_parallax.wgsl");
+const FAST_CODE: &str = include_str!("../../../kernels/shared/fast_code.wgsl");
 
-pub(crate) const NORMAL_INTEGER_CODES: KernelSource = KernelSource {
-    name: "normal, integer heights to integer codes",
-    entry_point: "normal",
-    files: &[NORMAL, INTEGER_CODES, WIDE_NORMAL, HEIGHTS, CODES, WIDE],
+pub(crate) const BAKE_INTEGERS: KernelSource = KernelSource {
+    name: "bake, integer heights to integer codes",
+    entry_point: "bake",
+    files: &[BAKE, INTEGER_HEIGHTS, INTEGERS, HEIGHTS, CODES, NEAREST_CODE, WIDE],
 };
-pub(crate) const NORMAL_INTEGER_FLOATS: KernelSource = KernelSource {
-    name: "normal, integer heights to floats",
-    entry_point: "normal",
-    files: &[NORMAL, INTEGER_FLOATS, WIDE_NORMAL, HEIGHTS, CODES, WIDE, SOFT_FLOAT],
+pub(crate) const BAKE_FLOATS: KernelSource = KernelSource {
+    name: "bake, integer heights to floats",
+    entry_point: "bake",
+    files: &[BAKE, INTEGER_HEIGHTS, FLOATS, HEIGHTS, CODES, NEAREST_CODE, NEAREST_FLOAT, WIDE, SOFT_FLOAT],
 };
-pub(crate) const NORMAL_FLOAT_HEIGHTS: KernelSource = KernelSource {
-    name: "normal, float heights",
-    entry_point: "normal",
-    files: &[NORMAL, FLOAT_HEIGHTS, HEIGHTS, CODES, WIDE, SOFT_FLOAT],
+pub(crate) const BAKE_FLOAT_HEIGHTS: KernelSource = KernelSource {
+    name: "bake, float heights",
+    entry_point: "bake",
+    files: &[BAKE, FLOAT_HEIGHTS, HEIGHTS, CODES, UNIT, FLOAT_PARALLAX, WIDE, SOFT_FLOAT],
 };
-pub(crate) const NORMAL_FAST: KernelSource = KernelSource {
-    name: "normal, fast",
-    entry_point: "normal",
-    files: &[NORMAL, FAST, HEIGHTS, CODES, WIDE, SOFT_FLOAT],
+pub(crate) const BAKE_FAST: KernelSource = KernelSource {
+    name: "bake, fast",
+    entry_point: "bake",
+    files: &[BAKE, FAST, HEIGHTS, CODES, FAST_CODE, WIDE, SOFT_FLOAT],
+};
+pub(crate) const BLEND_INTEGERS: KernelSource = KernelSource {
+    name: "blend, integer maps",
+    entry_point: "blend",
+    files: &[BLEND, BLENDED_INTEGERS, READ_CODES, CODES, NEAREST_CODE, NEAREST_FLOAT, SIGNED, WIDE, SOFT_FLOAT],
+};
+pub(crate) const BLEND_FLOATS: KernelSource = KernelSource {
+    name: "blend, float maps",
+    entry_point: "blend",
+    files: &[BLEND, BLENDED_FLOATS, READ_CODES, FLOAT_NORMALS, CODES, UNIT, WIDE, SOFT_FLOAT],
+};
+pub(crate) const BLEND_FAST: KernelSource = KernelSource {
+    name: "blend, fast",
+    entry_point: "blend",
+    files: &[BLEND, BLENDED_FAST, READ_CODES, FAST_NORMALS, CODES, FAST_CODE, WIDE, SOFT_FLOAT],
+};
+pub(crate) const PARALLAX_INTEGERS: KernelSource = KernelSource {
+    name: "parallax, integer maps",
+    entry_point: "parallax",
+    files: &[PARALLAX, INTEGER_MAPS, READ_CODES, CODES, NEAREST_CODE, NEAREST_FLOAT, WIDE, SOFT_FLOAT],
+};
+pub(crate) const PARALLAX_FLOATS: KernelSource = KernelSource {
+    name: "parallax, float maps",
+    entry_point: "parallax",
+    files: &[PARALLAX, FLOAT_MAPS, READ_CODES, FLOAT_NORMALS, CODES, UNIT, FLOAT_PARALLAX, WIDE, SOFT_FLOAT],
+};
+pub(crate) const PARALLAX_FAST: KernelSource = KernelSource {
+    name: "parallax, fast",
+    entry_point: "parallax",
+    files: &[PARALLAX, FAST_MAPS, READ_CODES, FAST_NORMALS, CODES, FAST_CODE, WIDE, SOFT_FLOAT],
 };
 
 /// Every kernel that a backend may run.
 #[cfg(test)]
-pub(crate) const ALL: [KernelSource; 4] =
-    [NORMAL_INTEGER_CODES, NORMAL_INTEGER_FLOATS, NORMAL_FLOAT_HEIGHTS, NORMAL_FAST];
+pub(crate) const ALL: [KernelSource; 10] = [
+    BAKE_INTEGERS,
+    BAKE_FLOATS,
+    BAKE_FLOAT_HEIGHTS,
+    BAKE_FAST,
+    BLEND_INTEGERS,
+    BLEND_FLOATS,
+    BLEND_FAST,
+    PARALLAX_INTEGERS,
+    PARALLAX_FLOATS,
+    PARALLAX_FAST,
+];

@@ -1,12 +1,22 @@
 //! The GPU, through wgpu.
 
 mod adapters;
+mod bake;
+mod blend;
 mod device;
 #[cfg(test)]
 mod faults;
+#[cfg(test)]
+mod fused;
 mod hosted;
+mod input;
 mod kernel;
-mod normal;
+#[cfg(test)]
+mod layer_tests;
+mod layers;
+mod operation;
+mod output;
+mod parallax;
 #[cfg(test)]
 mod reflection;
 mod self_test;
@@ -21,8 +31,9 @@ use crate::ops::parallax::ParallaxPlan;
 use crate::stream::{CodeSink, HeightBands, LayerBands};
 use device::Device;
 pub use hosted::{CodeTarget, HeightSource, Hosted, NormalBake};
+use layers::LayerOperation;
+use operation::{Operation, TEXELS_PER_INVOCATION, WORKGROUP, output_row_bytes};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use transfer::Transfer;
 
 /// A GPU that has passed its self-test.
 pub(crate) struct Gpu {
@@ -74,17 +85,35 @@ impl Gpu {
         Ok(gpu)
     }
 
-    /// Refuses rows that this device cannot take, and a kernel that computes wrong bytes; each kernel is tested once.
-    fn accept(&self, plan: &BakePlan) -> Result<()> {
-        let width = plan.size.width();
-        // A band has at least one row and its halo; a texel has at most four codes.
-        let heights = 3 * normal::heights_row_bytes(width, plan.height_type);
-        let codes = 4 * normal::format(plan).depth.bytes() * width.next_multiple_of(normal::TEXELS_PER_INVOCATION);
-        let groups = width.div_ceil(normal::TEXELS_PER_INVOCATION * normal::WORKGROUP);
-        if heights.max(codes) > self.device.greatest_binding() || groups > GREATEST_DISPATCH {
+    /// Refuses rows that this device cannot take.
+    fn check_width(&self, operation: &impl Operation) -> Result<()> {
+        let width = operation.width();
+        // A band has at least one row of each layer, and a mark for each row of its maps.
+        let inputs: usize = operation.inputs().iter().sum();
+        let outputs: usize = output_row_bytes(operation).iter().sum::<usize>() + 4;
+        let groups = width.div_ceil(TEXELS_PER_INVOCATION * WORKGROUP);
+        if inputs.max(outputs) > self.device.greatest_binding() || groups > GREATEST_DISPATCH {
             return Err(self.device.error(format_args!("rows of {width} texels are too wide for it")));
         }
-        self_test::accept(&self.device, plan)
+        Ok(())
+    }
+
+    /// Refuses rows that this device cannot take, and a kernel that computes wrong bytes; each kernel is tested once.
+    fn accept_bake(&self, plan: &BakePlan) -> Result<()> {
+        self.check_width(plan)?;
+        self_test::accept_bake(&self.device, plan)
+    }
+
+    /// Runs an operation on several maps.
+    fn run_layers(
+        &self,
+        plan: &impl LayerOperation,
+        bands: &mut dyn LayerBands,
+        sink: &mut dyn CodeSink,
+    ) -> Result<()> {
+        self.check_width(plan)?;
+        layers::accept(&self.device, plan)?;
+        layers::run(&self.device, plan, bands, &mut [sink])
     }
 }
 
@@ -102,19 +131,16 @@ impl Backend for Gpu {
     }
 
     fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
-        if plan.parallax.is_some() {
-            return Err(self.device.error("it bakes no parallax maps yet"));
-        }
-        self.accept(plan)?;
-        Transfer::new(&self.device, plan)?.run(bands, sinks[0])
+        self.accept_bake(plan)?;
+        bake::run(&self.device, plan, bands, sinks)
     }
 
-    fn blend(&self, _: &BlendPlan, _: &mut dyn LayerBands, _: &mut dyn CodeSink) -> Result<()> {
-        Err(self.device.error("it blends no maps yet"))
+    fn blend(&self, plan: &BlendPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {
+        self.run_layers(plan, bands, sink)
     }
 
-    fn parallax(&self, _: &ParallaxPlan, _: &mut dyn LayerBands, _: &mut dyn CodeSink) -> Result<()> {
-        Err(self.device.error("it bakes no parallax maps yet"))
+    fn parallax(&self, plan: &ParallaxPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {
+        self.run_layers(plan, bands, sink)
     }
 }
 

@@ -1,38 +1,85 @@
 //! The kernels held against the host by naga's reflection, and sabotage that must be caught.
 
-use super::kernel::{ALL, KernelSource};
-use super::normal::{NormalKernel, Params, WORKGROUP};
-use super::{Gpu, self_test};
+use super::input::Input;
+use super::kernel::{ALL, BAKE_FLOAT_HEIGHTS, BAKE_FLOATS, BAKE_INTEGERS, Kernel, KernelSource};
+use super::operation::{Operation, PARAMS_BYTES, WORKGROUP};
+use super::output::Output;
+use super::{Gpu, bake, blend, layer_tests, parallax, self_test};
 use crate::exact::Scale;
-use crate::map::{Channels, Convention, Depth, Encoding, HeightType, NormalFormat, Size};
+use crate::map::{Depth, Encoding, HeightType, NormalFormat, ParallaxFormat, Size};
 use crate::ops::Precision;
-use crate::ops::bake::{BakePlan, NormalOptions};
+use crate::ops::bake::{BakeOptions, BakePlan};
 use naga::{AddressSpace, ScalarKind, StorageAccess, TypeInner};
 use std::collections::BTreeSet;
 use std::mem::offset_of;
 
-/// Name, offset and kind of each of the host's parameters.
-fn host_params() -> Vec<(String, u32, ScalarKind)> {
-    fn kind_of<T: 'static>(_: impl Fn(&Params) -> T) -> ScalarKind {
-        match std::any::type_name::<T>() {
-            "u32" => ScalarKind::Uint,
-            "i32" => ScalarKind::Sint,
-            other => panic!("no kernel has a parameter of type {other}"),
+/// Name, offset and kind of a word of the parameters; `normal.place` is in a struct of its own.
+type Word = (String, u32, ScalarKind);
+
+/// What the host has for a parameter.
+trait Field {
+    fn words(name: &str, offset: u32) -> Vec<Word>;
+}
+
+impl Field for u32 {
+    fn words(name: &str, offset: u32) -> Vec<Word> {
+        vec![(name.into(), offset, ScalarKind::Uint)]
+    }
+}
+
+impl Field for i32 {
+    fn words(name: &str, offset: u32) -> Vec<Word> {
+        vec![(name.into(), offset, ScalarKind::Sint)]
+    }
+}
+
+/// The words of some of a host struct's fields, which `check_params` finds to be all.
+macro_rules! words {
+    ($struct:ty: $($field:ident)*) => {{
+        fn words_of<T: Field>(_: impl Fn($struct) -> T, name: &str, offset: usize) -> Vec<Word> {
+            T::words(name, offset as u32)
         }
-    }
-    macro_rules! fields {
-        ($($field:ident)*) => {
-            vec![$((
-                stringify!($field).to_string(),
-                offset_of!(Params, $field) as u32,
-                kind_of(|params: &Params| params.$field),
-            )),*]
+        [$(words_of(|it: $struct| it.$field, stringify!($field), offset_of!($struct, $field))),*].concat()
+    }};
+}
+
+impl Field for Output {
+    fn words(name: &str, offset: u32) -> Vec<Word> {
+        let words = words! {
+            Output: place row_words code_m code_c code_least code_greatest code_offset code_mask
         };
+        words.into_iter().map(|(word, at, kind)| (format!("{name}.{word}"), offset + at, kind)).collect()
     }
-    fields! {
-        width rows above body below row_words west_of_first east_of_last codes codes_row_words marks nonce
-        px py z_low z_high kx ky centre outer alpha
-        code_m code_c code_least code_greatest code_offset code_mask reserved
+}
+
+impl Field for Input {
+    fn words(name: &str, offset: u32) -> Vec<Word> {
+        let words = words! {
+            Input: place row_words flip factor centre greatest over_greatest green
+        };
+        words.into_iter().map(|(word, at, kind)| (format!("{name}.{word}"), offset + at, kind)).collect()
+    }
+}
+
+/// The host's parameters of a kernel, and their bytes.
+fn host_params(entry_point: &str) -> (Vec<Word>, usize) {
+    match entry_point {
+        "bake" => (
+            words! {
+                bake::Params: width rows above body below row_words west_of_first east_of_last marks nonce
+                    px py z_low z_high z_over_m kx ky centre outer alpha normal parallax
+            },
+            size_of::<bake::Params>(),
+        ),
+        "blend" => (
+            words! { blend::Params: width rows marks nonce a b q reserved base detail mask normal },
+            size_of::<blend::Params>(),
+        ),
+        "parallax" => (
+            words! { parallax::Params: width rows marks nonce heights normals parallax },
+            size_of::<parallax::Params>(),
+        ),
+        other => panic!("the host knows no parameters of {other}"),
     }
 }
 
@@ -51,15 +98,15 @@ fn check(text: &str, entry_point: &str) -> Result<(), String> {
         return Err("an atomic".into());
     }
     check_bindings(&module)?;
-    check_params(&module)
+    check_params(&module, entry_point)
 }
 
 fn check_bindings(module: &naga::Module) -> Result<(), String> {
     let read_write = StorageAccess::LOAD | StorageAccess::STORE;
     let wanted = [
         ("params", AddressSpace::Uniform),
-        ("heights", AddressSpace::Storage { access: StorageAccess::LOAD }),
-        ("codes", AddressSpace::Storage { access: read_write }),
+        ("inputs", AddressSpace::Storage { access: StorageAccess::LOAD }),
+        ("outputs", AddressSpace::Storage { access: read_write }),
     ];
     let found: Vec<_> = module.global_variables.iter().map(|(_, variable)| variable).collect();
     if found.len() != wanted.len() {
@@ -77,22 +124,30 @@ fn check_bindings(module: &naga::Module) -> Result<(), String> {
     Ok(())
 }
 
-fn check_params(module: &naga::Module) -> Result<(), String> {
-    let params = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some("Params")).ok_or("no Params")?.1;
-    let TypeInner::Struct { members, span } = &params.inner else { return Err("Params is no struct".into()) };
-    let kernel: Vec<_> = members
-        .iter()
-        .map(|member| match module.types[member.ty].inner {
-            TypeInner::Scalar(scalar) if scalar.width == 4 => {
-                (member.name.clone().unwrap_or_default(), member.offset, scalar.kind)
-            }
-            ref other => panic!("a parameter is {other:?}"),
-        })
-        .collect();
-    if kernel != host_params() || *span as usize != size_of::<Params>() {
+fn check_params(module: &naga::Module, entry_point: &str) -> Result<(), String> {
+    let params = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some("Params")).ok_or("no Params")?.0;
+    let kernel = kernel_words(module, params, "", 0);
+    let (host, bytes) = host_params(entry_point);
+    if kernel != host || module.types[params].inner.size(module.to_ctx()) as usize != bytes || bytes > PARAMS_BYTES {
         return Err(format!("parameters differ: {kernel:?}"));
     }
     Ok(())
+}
+
+/// The words of a kernel's struct, with those of the structs in it.
+fn kernel_words(module: &naga::Module, ty: naga::Handle<naga::Type>, name: &str, offset: u32) -> Vec<Word> {
+    match module.types[ty].inner {
+        TypeInner::Scalar(scalar) if scalar.width == 4 => vec![(name.into(), offset, scalar.kind)],
+        TypeInner::Struct { ref members, .. } => members
+            .iter()
+            .flat_map(|member| {
+                let own = member.name.as_deref().unwrap_or_default();
+                let name = if name.is_empty() { own.into() } else { format!("{name}.{own}") };
+                kernel_words(module, member.ty, &name, offset + member.offset)
+            })
+            .collect(),
+        ref other => panic!("a parameter is {other:?}"),
+    }
 }
 
 #[test]
@@ -108,7 +163,8 @@ fn a_kernel_that_differs_from_the_host_is_noticed() {
     for (what, from, to) in [
         ("two parameters exchanged", "px: i32,", "py_: i32,"),
         ("a parameter of another kind", "rows: u32, ", "rows: i32, "),
-        ("a parameter less", "    reserved: u32,\n", ""),
+        ("a parameter less", "    parallax: Output,\n", ""),
+        ("a parameter of an output less", "    code_offset: i32, ", "    //"),
         ("another workgroup", "@workgroup_size(64", "@workgroup_size(32"),
         ("another binding", "@binding(1)", "@binding(3)"),
         ("codes that cannot be written", "storage, read_write", "storage, read"),
@@ -139,24 +195,40 @@ fn every_file_under_kernels_is_registered() {
     assert!(files >= ALL.len(), "{files} files");
 }
 
+/// A plan for a small map of heights.
+fn plan(
+    heights: HeightType,
+    normal: Option<(Encoding, Depth)>,
+    parallax: Option<(Encoding, Depth)>,
+    precision: Precision,
+) -> BakePlan {
+    let normal = normal.map(|(encoding, depth)| NormalFormat { encoding, depth, ..Default::default() });
+    let parallax = parallax.map(|(encoding, depth)| ParallaxFormat { encoding, depth });
+    let options = BakeOptions { normal, parallax, precision, scale: Scale::texels(3), ..Default::default() };
+    BakePlan::new(&options, Size::new(5, 5).unwrap(), heights).unwrap()
+}
+
+const UNORM8: Option<(Encoding, Depth)> = Some((Encoding::Unorm, Depth::Bits8));
+const SNORM16: Option<(Encoding, Depth)> = Some((Encoding::Snorm, Depth::Bits16));
+const HALF: Option<(Encoding, Depth)> = Some((Encoding::Float, Depth::Float16));
+
 #[test]
 fn constants_are_overrides_of_their_kernel() {
-    let mut seen = BTreeSet::new();
-    for depth in [HeightType::U8, HeightType::U16, HeightType::F32] {
-        for (encoding, code_depth) in [(Encoding::Unorm, Depth::Bits8), (Encoding::Float, Depth::Float16)] {
+    let mut kernels = layer_tests::kernels();
+    for heights in [HeightType::U8, HeightType::U16, HeightType::F32] {
+        for (normal, parallax) in [(UNORM8, None), (HALF, None), (None, HALF), (UNORM8, SNORM16), (HALF, UNORM8)] {
             for precision in [Precision::Exact, Precision::Fast] {
-                let format =
-                    NormalFormat { encoding, depth: code_depth, channels: Channels::Xyz, convention: Convention::Gl };
-                let options = NormalOptions { format, precision, scale: Scale::texels(3), ..Default::default() };
-                let plan = BakePlan::new(&options.into(), Size::new(5, 5).unwrap(), depth).unwrap();
-                let kernel = NormalKernel::new(&plan, 3, true);
-                let module = naga::front::wgsl::parse_str(&kernel.source.text()).unwrap();
-                let overrides: BTreeSet<_> = module.overrides.iter().filter_map(|(_, o)| o.name.clone()).collect();
-                let constants: BTreeSet<_> = kernel.constants().iter().map(|(name, _)| name.to_string()).collect();
-                assert_eq!(constants, overrides, "{}", kernel.source.name);
-                seen.insert(kernel.source.name);
+                kernels.push(plan(heights, normal, parallax, precision).kernel());
             }
         }
+    }
+    let mut seen = BTreeSet::new();
+    for Kernel { source, constants } in kernels {
+        let module = naga::front::wgsl::parse_str(&source.text()).unwrap();
+        let overrides: BTreeSet<_> = module.overrides.iter().filter_map(|(_, o)| o.name.clone()).collect();
+        let constants: BTreeSet<_> = constants.iter().map(|(name, _)| name.to_string()).collect();
+        assert_eq!(constants, overrides, "{}", source.name);
+        seen.insert(source.name);
     }
     assert_eq!(seen.len(), ALL.len(), "{seen:?}");
 }
@@ -168,10 +240,10 @@ fn a_device_that_computes_wrong_bytes_fails_its_self_test() {
         return eprintln!("skipped: no lavapipe");
     };
     for (source, from, to) in [
-        (ALL[0], "let ma = u32(params.code_m) * a", "let ma = u32(params.code_m + 1) * a"),
-        (ALL[0], "u32(params.code_m) * u32(params.code_m)", "u32(params.code_m) * u32(params.code_m + 1)"),
-        (ALL[1], "let inexact = u32(", "let inexact = 0u * u32("),
-        (ALL[2], "((n >> 3u) & 1u) > 4u", "((n >> 3u) & 1u) > 5u"),
+        (BAKE_INTEGERS, "let ma = u32(output.code_m) * a", "let ma = u32(output.code_m + 1) * a"),
+        (BAKE_INTEGERS, "times96(aa, u32(output.code_m)", "times96(aa, u32(output.code_m + 1)"),
+        (BAKE_FLOATS, "let inexact = u32(", "let inexact = 0u * u32("),
+        (BAKE_FLOAT_HEIGHTS, "((n >> 3u) & 1u) > 4u", "((n >> 3u) & 1u) > 5u"),
     ] {
         let text = source.text();
         assert!(text.contains(from), "{}: no {from:?}", source.name);
@@ -179,5 +251,38 @@ fn a_device_that_computes_wrong_bytes_fails_its_self_test() {
         gpu.device.substitute(source, &text.replacen(from, to, 1));
         let error = self_test::run(&gpu.device).expect_err(source.name).to_string();
         assert!(error.contains("fails the self-test"), "{}: {error}", source.name);
+    }
+}
+
+#[test]
+fn a_kernel_that_computes_wrong_bytes_is_refused_before_its_first_job() {
+    let Ok(adapter) = super::adapters::select(Some("vulkan:llvmpipe")) else {
+        assert!(std::env::var_os("TEXBAKE_REQUIRE_GPU").is_none(), "no lavapipe");
+        return eprintln!("skipped: no lavapipe");
+    };
+    let exact = |heights, normal, parallax| plan(heights, normal, parallax, Precision::Exact);
+    for (plan, from, to) in [
+        (exact(HeightType::U8, UNORM8, UNORM8), "let a = params.z_over_m * ", "let a = 1u + params.z_over_m * "),
+        (exact(HeightType::U16, None, SNORM16), "product(params.z_over_m, ", "product(params.z_over_m + 1u, "),
+        (
+            exact(HeightType::U8, UNORM8, HALF),
+            "nearest_float(PARALLAX_BITS, negative",
+            "nearest_float(PARALLAX_BITS, !negative",
+        ),
+        (exact(HeightType::U16, UNORM8, SNORM16), "nearest_code96(params.parallax, ", "nearest_code96(params.normal, "),
+        (exact(HeightType::U8, UNORM8, SNORM16), "1u, PARALLAX_BITS), parallaxes", "1u, NORMAL_BITS), parallaxes"),
+        (exact(HeightType::F32, UNORM8, UNORM8), "min(height, ONE)", "height"),
+        (exact(HeightType::F32, None, HALF), "(height & SIGN) != 0u", "false"),
+    ] {
+        let kernel = plan.kernel();
+        let text = kernel.source.text();
+        assert!(text.contains(from), "{}: no {from:?}", kernel.source.name);
+        let gpu = Gpu { device: super::Device::open(&adapter).unwrap() };
+        self_test::accept_bake(&gpu.device, &plan).unwrap();
+        let gpu = Gpu { device: super::Device::open(&adapter).unwrap() };
+        gpu.device.substitute(kernel.source, &text.replacen(from, to, 1));
+        let error = gpu.accept_bake(&plan).expect_err(from).to_string();
+        assert!(error.contains("fails the self-test: bake: wrong"), "{from}: {error}");
+        assert!(!gpu.device.is_tested(&kernel), "{from}");
     }
 }

@@ -1,16 +1,17 @@
 //! Bands up, codes down: a ring of slots keeps the next band uploading while one computes and one reads back.
 
 use super::device::Device;
-use super::normal::{self, NormalKernel, Params, TEXELS_PER_INVOCATION, WORKGROUP, heights_row_bytes};
+use super::operation::{Layer, Operation, Places, Rows, TEXELS_PER_INVOCATION, WORKGROUP, output_row_bytes};
 use super::slot::Slot;
+use crate::backend::fill_rows;
 use crate::error::Result;
-use crate::map::CodesMut;
-use crate::ops::bake::BakePlan;
-use crate::stream::{Band, CodeSink, HeightBand, HeightBands};
+use crate::map::{CodesMut, CodesRef};
+use crate::stream::CodeSink;
 use std::collections::VecDeque;
+use std::ops::Range;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
-use wgpu::{Buffer, CommandEncoderDescriptor, ComputePipeline, MapMode, PollType};
+use wgpu::{BufferViewMut, CommandEncoderDescriptor, ComputePipeline, MapMode, PollType};
 
 /// Bands in flight.
 const RING: usize = 3;
@@ -21,114 +22,116 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// A band whose codes are not back yet.
 struct InFlight {
     slot: Slot,
-    rows: usize,
-    nonce: u32,
+    places: Places,
     submission: wgpu::SubmissionIndex,
     mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
 }
 
-/// One bake on a device.
-pub(super) struct Transfer<'a> {
+/// One job on a device.
+pub(super) struct Transfer<'a, O> {
     device: &'a Device,
-    plan: &'a BakePlan,
-    kernel: NormalKernel,
+    operation: &'a O,
+    entry_point: &'static str,
     pipeline: ComputePipeline,
+    input_row_bytes: Vec<usize>,
+    output_row_bytes: Vec<usize>,
     flying: VecDeque<InFlight>,
 }
 
-impl<'a> Transfer<'a> {
+impl<'a, O: Operation> Transfer<'a, O> {
     /// Prepares the kernel.
-    pub fn new(device: &'a Device, plan: &'a BakePlan) -> Result<Self> {
-        let kernel = Self::kernel(plan);
+    pub fn new(device: &'a Device, operation: &'a O) -> Result<Self> {
+        let kernel = operation.kernel();
         let pipeline = device.guarded(|| Ok(device.pipeline(&kernel)))?;
-        Ok(Self { device, plan, kernel, pipeline, flying: VecDeque::new() })
+        Ok(Self {
+            device,
+            operation,
+            entry_point: kernel.source.entry_point,
+            pipeline,
+            input_row_bytes: operation.inputs(),
+            output_row_bytes: output_row_bytes(operation),
+            flying: VecDeque::new(),
+        })
     }
 
-    /// The kernel that a plan runs.
-    pub fn kernel(plan: &BakePlan) -> NormalKernel {
-        NormalKernel::new(plan, normal::format(plan).channels.count(), true)
-    }
-
-    /// Bakes all bands.
-    pub fn run(mut self, bands: &mut dyn HeightBands, sink: &mut dyn CodeSink) -> Result<()> {
-        while let Some(band) = bands.next()? {
-            if self.flying.len() == RING {
-                self.land(sink)?;
-            }
-            let flight = self.device.guarded(|| self.launch(&band))?;
-            self.flying.push_back(flight);
+    /// Sends the next band of `rows` rows to the device, and hands on the codes of an earlier one if it must.
+    pub fn send(&mut self, rows: usize, layers: &[Layer<'_>], sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
+        if self.flying.len() == RING {
+            self.land(sinks)?;
         }
+        let flight = self.device.guarded(|| self.launch(rows, layers))?;
+        self.flying.push_back(flight);
+        Ok(())
+    }
+
+    /// Hands on the codes that are still on their way.
+    pub fn finish(mut self, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
         while !self.flying.is_empty() {
-            self.land(sink)?;
+            self.land(sinks)?;
         }
         Ok(())
     }
 
     /// Sends a band to the device.
-    fn launch(&self, band: &HeightBand<'_>) -> Result<InFlight> {
-        let Self { device, plan, .. } = self;
-        let (width, rows) = (plan.size.width(), band.rows());
-        let row_bytes = heights_row_bytes(width, plan.height_type);
-        let codes_row_bytes = self.kernel.codes_row_bytes(width);
-        let heights_bytes = (row_bytes * (rows + 2)) as u64;
-        let codes_bytes = (codes_row_bytes * rows) as u64;
-        let marks_bytes = 4 * rows as u64;
-        let slot = device.slot(heights_bytes, codes_bytes + marks_bytes);
+    fn launch(&self, rows: usize, layers: &[Layer<'_>]) -> Result<InFlight> {
+        let device = self.device;
+        let (inputs, input_words) = stacked(layers.iter().map(|layer| layer.rows).zip(&self.input_row_bytes));
+        let (outputs, marks) = stacked(self.output_row_bytes.iter().map(|row_bytes| (rows, row_bytes)));
+        let places = Places { rows: rows as u32, inputs, outputs, marks, nonce: device.fresh_nonce() };
+        let input_bytes = 4 * u64::from(input_words);
+        let output_bytes = 4 * (u64::from(marks) + rows as u64);
+        let slot = device.slot(input_bytes, output_bytes);
 
-        let words = |bytes: usize| (bytes / 4) as u32;
-        let params = Params {
-            rows: rows as u32,
-            above: 0,
-            body: words(row_bytes),
-            below: words(row_bytes * (rows + 1)),
-            row_words: words(row_bytes),
-            codes: 0,
-            codes_row_words: words(codes_row_bytes),
-            marks: words(codes_row_bytes * rows),
-            nonce: device.fresh_nonce(),
-            ..normal::params(plan)
-        };
-        write_rows(&slot.upload, band, row_bytes).map_err(|reason| device.error(reason))?;
-        device.queue.write_buffer(&slot.params, 0, bytemuck::bytes_of(&params));
+        let mut view = slot.upload.get_mapped_range_mut(..).map_err(|error| device.error(error))?;
+        for (layer, at) in layers.iter().zip(&places.inputs) {
+            write_rows(&mut view, layer, *at);
+        }
+        drop(view);
+        slot.upload.unmap();
+        device.queue.write_buffer(&slot.params, 0, &self.operation.params(&places));
 
-        let mut encoder = device.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("normal") });
-        encoder.copy_buffer_to_buffer(&slot.upload, 0, &slot.heights, 0, heights_bytes);
+        let mut encoder =
+            device.device.create_command_encoder(&CommandEncoderDescriptor { label: Some(self.entry_point) });
+        encoder.copy_buffer_to_buffer(&slot.upload, 0, &slot.inputs, 0, input_bytes);
         let bindings = device.bind(
             slot.params.as_entire_binding(),
-            slot.heights.as_entire_binding(),
-            slot.codes.as_entire_binding(),
+            slot.inputs.as_entire_binding(),
+            slot.outputs.as_entire_binding(),
         );
-        dispatch(&mut encoder, &self.pipeline, &bindings, width, rows);
-        encoder.copy_buffer_to_buffer(&slot.codes, 0, &slot.download, 0, codes_bytes + marks_bytes);
+        dispatch(&mut encoder, &self.pipeline, &bindings, self.operation.width(), rows);
+        encoder.copy_buffer_to_buffer(&slot.outputs, 0, &slot.download, 0, output_bytes);
         let submission = device.queue.submit([encoder.finish()]);
 
         let (report, mapped) = channel();
         let also = report.clone();
         slot.upload.map_async(MapMode::Write, .., move |result| drop(report.send(result)));
         slot.download.map_async(MapMode::Read, .., move |result| drop(also.send(result)));
-        Ok(InFlight { slot, rows, nonce: params.nonce, submission, mapped })
+        Ok(InFlight { slot, places, submission, mapped })
     }
 
     /// Waits for the oldest band and hands its codes on.
-    fn land(&mut self, sink: &mut dyn CodeSink) -> Result<()> {
+    fn land(&mut self, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
         let Some(flight) = self.flying.pop_front() else { return Ok(()) };
-        let Self { device, plan, .. } = *self;
-        let row_bytes = self.kernel.codes_row_bytes(plan.size.width());
-        let (slot, rows) = (&flight.slot, flight.rows);
+        let device = self.device;
+        let InFlight { slot, places, .. } = &flight;
         let view = device.guarded(|| {
             flight.wait(device)?;
             slot.download.get_mapped_range(..).map_err(|error| device.error(error))
         })?;
-        let (codes, marks) = view.split_at(row_bytes * rows);
+        let rows = places.rows as usize;
+        let marks = &view[4 * places.marks as usize..];
         for (row, mark) in marks.chunks_exact(4).take(rows).enumerate() {
-            if mark != flight.nonce.to_ne_bytes() {
+            if mark != places.nonce.to_ne_bytes() {
                 let reason = format!("row {row} of a band came back without having been computed");
                 return Err(device.give_up(reason));
             }
         }
-        // What the sink has to say is not the device's fault: it stands outside the guard.
-        read_rows(codes, row_bytes, rows, &mut sink.room(rows)?);
-        sink.filled()?;
+        // What the sinks have to say is not the device's fault: it stands outside the guard.
+        fill_rows(sinks, rows, |maps| {
+            for (map, at) in maps.iter_mut().zip(&places.outputs) {
+                read_rows(&view, *at, rows, map);
+            }
+        })?;
         drop(view);
         device.guarded(|| {
             slot.download.unmap();
@@ -168,38 +171,51 @@ pub(super) fn dispatch(
     pass.dispatch_workgroups(width.div_ceil(TEXELS_PER_INVOCATION * WORKGROUP) as u32, rows as u32, 1);
 }
 
-/// Copies rows of codes without their padding.
-fn read_rows(codes: &[u8], row_bytes: usize, rows: usize, target: &mut CodesMut<'_>) {
-    let target = target.bytes_mut();
-    let unpadded = target.len() / rows;
-    for (from, to) in codes.chunks_exact(row_bytes).zip(target.chunks_exact_mut(unpadded)) {
-        to.copy_from_slice(&from[..unpadded]);
+/// Maps of so many rows of so many bytes one after the other, and the word after the last.
+fn stacked<'a>(maps: impl Iterator<Item = (usize, &'a usize)>) -> (Vec<Rows>, u32) {
+    let mut place = 0;
+    let stack = |(rows, row_bytes): (usize, &usize)| {
+        let words = (row_bytes / 4) as u32;
+        let at = Rows { place, words };
+        place += rows as u32 * words;
+        at
+    };
+    let all = maps.map(stack).collect();
+    (all, place)
+}
+
+/// Bytes of row `row` of a map.
+fn bytes_of_row(at: Rows, row: usize) -> Range<usize> {
+    let start = 4 * (at.place as usize + row * at.words as usize);
+    start..start + 4 * at.words as usize
+}
+
+/// Writes the rows of a layer, each padded with zeros.
+fn write_rows(view: &mut BufferViewMut, layer: &Layer<'_>, at: Rows) {
+    let row_codes = layer.codes.len() / layer.rows;
+    let mut widened = Vec::new();
+    for row in 0..layer.rows {
+        let codes = layer.codes.slice(row * row_codes..(row + 1) * row_codes);
+        let bytes: &[u8] = match codes {
+            CodesRef::F16(codes) => {
+                widened.clear();
+                widened.extend(codes.iter().map(|code| code.to_f32()));
+                bytemuck::cast_slice(&widened)
+            }
+            _ => codes.bytes(),
+        };
+        let Range { start, end } = bytes_of_row(at, row);
+        let padding = start + bytes.len();
+        view.slice(start..padding).copy_from_slice(bytes);
+        view.slice(padding..end).fill(0);
     }
 }
 
-/// Writes the rows of a band with its halo, each padded to `row_bytes`, and unmaps the buffer.
-fn write_rows(upload: &Buffer, band: &HeightBand<'_>, row_bytes: usize) -> Result<(), wgpu::MapRangeError> {
-    fn write<T: bytemuck::Pod>(
-        upload: &Buffer,
-        band: &Band<'_, T>,
-        row_bytes: usize,
-    ) -> Result<(), wgpu::MapRangeError> {
-        let rows = band.rows() as isize;
-        let mut view = upload.get_mapped_range_mut(..)?;
-        let padding = vec![0; row_bytes - size_of_val(band.above)];
-        for (slot, row) in (-1..=rows).enumerate() {
-            let bytes: &[u8] = bytemuck::cast_slice(band.row(row));
-            let start = slot * row_bytes;
-            view.slice(start..start + bytes.len()).copy_from_slice(bytes);
-            view.slice(start + bytes.len()..start + row_bytes).copy_from_slice(&padding);
-        }
-        drop(view);
-        upload.unmap();
-        Ok(())
-    }
-    match band {
-        HeightBand::U8(band) => write(upload, band, row_bytes),
-        HeightBand::U16(band) => write(upload, band, row_bytes),
-        HeightBand::F32(band) => write(upload, band, row_bytes),
+/// Copies rows of codes without their padding.
+fn read_rows(outputs: &[u8], at: Rows, rows: usize, target: &mut CodesMut<'_>) {
+    let target = target.bytes_mut();
+    let unpadded = target.len() / rows;
+    for (row, to) in target.chunks_exact_mut(unpadded).enumerate() {
+        to.copy_from_slice(&outputs[bytes_of_row(at, row)][..unpadded]);
     }
 }

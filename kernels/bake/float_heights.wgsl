@@ -1,0 +1,45 @@
+// Float heights in IEEE binary32, in the order of src/ops/bake/reference.rs.
+//
+// Numbers are bit patterns for soft_float.wgsl. What repeats is a loop, so that drivers compile each step once.
+
+const SMALLEST_HEIGHT: u32 = 0x12800000u;  // 2^-90: heights below count as zero in slopes
+const SMALLEST_SLOPE: u32 = 0x13000000u;   // 2^-89: slopes below 2^-25, over 2^64, count as zero
+const STEEP: u32 = 0x3d800000u;            // 2^-4: slopes from 2^60 on, over 2^64
+
+fn bake_texel(north: vec3<u32>, middle: vec3<u32>, south: vec3<u32>) -> Texel {
+    let normal = float_normal(north, middle, south);
+    var texel: Texel;
+    if (NORMAL_CODES > 0u) {
+        texel.normal = float_codes(params.normal, NORMAL_IS_FLOAT, NORMAL_BITS, normal);
+    }
+    if (PARALLAX_BITS > 0u) {
+        let parallax = float_parallax(normal.z, middle.y);
+        texel.parallax = float_code(params.parallax, PARALLAX_IS_FLOAT, PARALLAX_BITS, parallax);
+    }
+    return texel;
+}
+
+fn float_normal(north: vec3<u32>, middle: vec3<u32>, south: vec3<u32>) -> vec3<u32> {
+    let n = vec3(over_64(north.x), over_64(north.y), over_64(north.z));
+    let m = vec3(over_64(middle.x), 0u, over_64(middle.z));
+    let s = vec3(over_64(south.x), over_64(south.y), over_64(south.z));
+    var slope: vec2<u32>;
+    for (var axis = 0u; axis < 2u; axis++) {
+        let down = axis == 1u;
+        let outer = add(
+            sub(select(n.z, s.x, down), n.x),
+            sub(s.z, select(s.x, n.z, down)),
+        );
+        let centre = sub(select(m.z, s.y, down), select(m.x, n.y, down));
+        let sum = add(mul(bits_of(f32(params.outer)), outer), mul(bits_of(f32(params.centre)), centre));
+        slope[axis] = zero_below(SMALLEST_SLOPE, mul(sum, select(params.kx, params.ky, down)));
+    }
+    let steep = max(slope.x & ~SIGN, slope.y & ~SIGN) >= STEEP;
+    let unit_exponent = select(64, -30, steep);
+    // z: 1 or 2^-94.
+    return unit(vec3(scaled(slope.x, unit_exponent), scaled(slope.y, unit_exponent), select(ONE, 0x10800000u, steep)));
+}
+
+fn over_64(height: u32) -> u32 {
+    return scaled(zero_below(SMALLEST_HEIGHT, height), -6);
+}
