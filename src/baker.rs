@@ -81,6 +81,11 @@ pub struct Maps<N, P = N> {
 
 impl<T> Maps<T> {
     /// The maps that there are: normal, then parallax.
+    pub fn iter(&self) -> impl Iterator<Item = &T> {
+        self.normal.iter().chain(&self.parallax)
+    }
+
+    /// As [`Maps::iter`].
     pub fn into_vec(self) -> Vec<T> {
         self.normal.into_iter().chain(self.parallax).collect()
     }

@@ -2,13 +2,16 @@
 
 mod args;
 mod bake;
+mod blend;
 mod config;
 mod devices;
 mod exit;
 mod normal;
+mod parallax;
 mod print;
 mod progress;
 mod settings;
+mod single;
 mod values;
 
 use args::{Arguments, Command};
@@ -23,7 +26,9 @@ pub fn run() -> ExitCode {
     let arguments = Arguments::parse();
     let done = match &arguments.command {
         Command::Normal(arguments) => normal::normal(arguments),
+        Command::Parallax(arguments) => parallax::parallax(arguments),
         Command::Bake(arguments) => bake::bake(arguments),
+        Command::Blend(arguments) => blend::blend(arguments),
         Command::Devices(arguments) => devices::devices(arguments),
     };
     let exit = done.unwrap_or_else(|failure| {
