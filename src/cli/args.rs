@@ -25,6 +25,8 @@ pub struct Arguments {
 pub enum Command {
     Normal(Box<NormalArguments>),
     Bake(Box<BakeArguments>),
+    Check(Box<super::check::CheckArguments>),
+    Diff(Box<super::diff::DiffArguments>),
     Devices(DevicesArguments),
 }
 

@@ -2,8 +2,10 @@
 
 mod args;
 mod bake;
+mod check;
 mod config;
 mod devices;
+mod diff;
 mod exit;
 mod normal;
 mod print;
@@ -24,6 +26,8 @@ pub fn run() -> ExitCode {
     let done = match &arguments.command {
         Command::Normal(arguments) => normal::normal(arguments),
         Command::Bake(arguments) => bake::bake(arguments),
+        Command::Check(arguments) => check::check(arguments),
+        Command::Diff(arguments) => diff::diff(arguments),
         Command::Devices(arguments) => devices::devices(arguments),
     };
     let exit = done.unwrap_or_else(|failure| {

@@ -77,6 +77,8 @@ pub enum Problem {
     Green,
     /// The file says that it holds sRGB colours.
     Srgb,
+    /// Something else about the file, from its reader.
+    File,
     /// The edges do not fit; how many times the greatest step inside.
     Seam,
     /// A fine format with nothing but 8-bit values.
@@ -97,7 +99,7 @@ pub enum Severity {
 named! {
     Problem "problem" {
         NoDirection = "no-direction", ZeroVector = "zero-vector", NonUnit = "non-unit", BelowZero = "below-zero",
-        AtZero = "at-zero", Green = "green", Srgb = "srgb", Seam = "seam", EightBit = "eight-bit",
+        AtZero = "at-zero", Green = "green", Srgb = "srgb", File = "file", Seam = "seam", EightBit = "eight-bit",
         Banding = "banding"
     }
     Severity "severity" { Fault = "fault", Note = "note" }
@@ -144,24 +146,22 @@ pub fn check(source: Box<dyn NormalSource>, options: &CheckOptions) -> Result<Fi
     Ok(findings)
 }
 
-/// Checks a normal map file: as [`check`], and whether it says that it holds sRGB colours. Gives what else looks wrong
-/// in the file, in words.
+/// Checks a normal map file: as [`check`], and what the file says of itself.
 ///
 /// # Errors
 /// As [`open_normals`] and [`check`].
-pub fn check_file(path: &Path, read: &NormalReadOptions, options: &CheckOptions) -> Result<(Findings, Vec<String>)> {
+pub fn check_file(path: &Path, read: &NormalReadOptions, options: &CheckOptions) -> Result<Findings> {
     let NormalFile { rows, warnings, says_srgb } = open_normals(path, read)?;
     let mut findings = check(rows, options)?;
-    if says_srgb {
-        findings.add(Finding {
-            what: "the file says that it holds sRGB colours".into(),
-            remedy: "normals are data: export it as linear or raw data, and if it was converted to sRGB meanwhile, \
-                     from its source"
-                .into(),
-            ..Finding::new(Problem::Srgb, Severity::Fault)
-        });
+    for warning in warnings {
+        let is_srgb = says_srgb && warning.contains("sRGB");
+        let (problem, severity) =
+            if is_srgb { (Problem::Srgb, Severity::Fault) } else { (Problem::File, Severity::Note) };
+        // Warnings say what to do behind a semicolon.
+        let (what, remedy) = warning.split_once("; ").unwrap_or((&warning, "nothing was changed by it"));
+        findings.add(Finding { what: what.into(), remedy: remedy.into(), ..Finding::new(problem, severity) });
     }
-    Ok((findings, warnings))
+    Ok(findings)
 }
 
 impl Finding {

@@ -17,7 +17,8 @@ pub struct Seams {
 ///
 /// A step is |dx| + |dy| + |dz| of two neighbouring normals, its mean that over the length of the edge. Of the last
 /// column to the first, the first to the second and the last but one to the last, those with the greatest step are
-/// given: heights that were baked with the wrong edge leave their step beside the seam.
+/// given: heights that were baked with the wrong edge leave their step beside the seam. A crease that no place but the
+/// edge has, such as a joint around a single tile, looks like a seam.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seam {
     /// The columns, or rows.
