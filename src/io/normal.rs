@@ -11,7 +11,7 @@ use std::path::Path;
 const SRGB_WARNING: &str = "the file says that its codes are sRGB colours; a normal map is data, and they are read \
      unconverted. If they really were converted to sRGB, export the map again as linear data";
 
-/// What the user should know about a JPEG.
+/// What the user should know about a JPEG or a lossy WebP.
 const LOSSY_WARNING: &str = "its compression is lossy, which bends normals and shows as blocks in highlights; \
      export the map as PNG or TIFF";
 

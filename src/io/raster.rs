@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::map::HeightType;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, ErrorKind, Seek};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::path::Path;
 
 /// Opens and decodes a file.
@@ -22,6 +22,11 @@ pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<O
         // The decoder would fill what is missing with grey.
         return Err(truncated(path));
     }
+    let lossy = match format {
+        ImageFormat::Jpeg => true,
+        ImageFormat::WebP => webp_is_lossy(&mut file).map_err(Error::io(path))?,
+        _ => false,
+    };
     file.rewind().map_err(Error::io(path))?;
     let mut reader = ImageReader::with_format(file, format);
     let mut decoder_limits = Limits::no_limits();
@@ -50,7 +55,6 @@ pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<O
     }
     decoder.read_image(&mut samples).map_err(reason(path))?;
     let whole = DecodedWhole::new(layout, Samples::U8(samples));
-    let lossy = format == ImageFormat::Jpeg;
     Ok(Opened { says_srgb: srgb::is_named_by(&profile), lossy, ..Opened::new(whole) })
 }
 
@@ -72,6 +76,28 @@ fn jpeg_has_end(file: &mut impl BufRead) -> io::Result<bool> {
             return Ok(has_end);
         }
         file.consume(count);
+    }
+}
+
+/// Whether the first coded picture of a WebP is in a `VP8 ` chunk; lossless ones are in `VP8L` (RFC 9649, section 2).
+fn webp_is_lossy(file: &mut BufReader<File>) -> io::Result<bool> {
+    // Behind "RIFF", the file's length and "WEBP": four letters, a length, as many bytes, and one more if it is odd.
+    let mut header = [0; 8];
+    file.seek(SeekFrom::Start(12))?;
+    loop {
+        match file.read_exact(&mut header) {
+            Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Ok(false),
+            read => read?,
+        }
+        let [letters @ .., a, b, c, d] = header;
+        match &letters {
+            b"VP8 " => return Ok(true),
+            b"VP8L" => return Ok(false),
+            _ => {
+                let length = i64::from(u32::from_le_bytes([a, b, c, d]));
+                file.seek_relative(length + length % 2)?;
+            }
+        }
     }
 }
 

@@ -1,7 +1,10 @@
-//! Reading height maps and writing normal maps.
+//! Reading height maps and normal maps, writing normal maps and parallax maps.
 
 mod damage;
 mod exr;
+mod hand_made_tiff;
+mod normal;
+mod parallax;
 mod png;
 mod raster;
 mod raw;

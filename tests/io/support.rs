@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
-use texbake::io::{HeightFile, ReadOptions, create_normals, open_heights};
+use texbake::io::{HeightFile, NormalFile, NormalReadOptions, ReadOptions, create_normals, open_heights, open_normals};
+use texbake::stream::RowSink;
 use texbake::{
-    Channels, CodesRef, Convention, Depth, Encoding, Error, HeightMap, HeightType, Heights, HeightsMut, NormalFormat,
-    Size,
+    Channels, Codes, CodesRef, Convention, Depth, Encoding, Error, HeightMap, HeightType, Heights, HeightsMut,
+    NormalFormat, NormalMap, Size,
 };
 
 /// Heights of any type, to compare.
@@ -123,26 +124,56 @@ pub fn read_error(path: &Path, options: &ReadOptions) -> String {
     message
 }
 
+/// Reads a normal map at once, row by row and in uneven pieces into poisoned room, which must all agree.
+pub fn read_normals_all_ways(path: &Path, options: &NormalReadOptions) -> Result<NormalMap, Error> {
+    let (map, _) = NormalMap::read_with(path, options)?;
+    let (format, height) = (map.format(), map.size().height());
+    let row = map.codes().len() / height;
+    for pieces in [&[1][..], &[3, 1, 2], &[height]] {
+        let NormalFile { mut rows, .. } = open_normals(path, options)?;
+        assert_eq!((rows.size(), rows.format()), (map.size(), format));
+        let mut read = Codes::zeroed(format.depth, height * row);
+        read.as_mut().bytes_mut().fill(0xa5);
+        let mut first = 0;
+        for piece in pieces.iter().cycle() {
+            let end = (first + piece).min(height);
+            rows.read(read.as_mut().slice(first * row..end * row))?;
+            first = end;
+            if first == height {
+                break;
+            }
+        }
+        assert_eq!(read.as_ref().bytes(), map.codes().bytes(), "in pieces of {pieces:?}");
+    }
+    Ok(map)
+}
+
+/// The message of a normal map that must be refused.
+pub fn normals_error(path: &Path, options: &NormalReadOptions) -> String {
+    let error = NormalMap::read_with(path, options).map(|_| ()).expect_err("this file must be refused");
+    let message = error.to_string();
+    assert!(message.contains(&*path.file_name().unwrap().to_string_lossy()), "{message}");
+    message
+}
+
 pub fn format(encoding: Encoding, depth: Depth, channels: Channels) -> NormalFormat {
     NormalFormat { encoding, depth, channels, convention: Convention::Gl }
 }
 
 /// Writes rows one by one.
 pub fn write(path: &Path, width: usize, height: usize, format: NormalFormat, codes: CodesRef) -> Result<(), Error> {
-    let mut sink = create_normals(path, Size::new(width, height)?, format)?;
-    let row = width * format.channels.count();
-    for y in 0..height {
-        let range = y * row..(y + 1) * row;
-        sink.write(
-            y,
-            match codes {
-                CodesRef::U8(codes) => CodesRef::U8(&codes[range]),
-                CodesRef::U16(codes) => CodesRef::U16(&codes[range]),
-                CodesRef::F16(codes) => CodesRef::F16(&codes[range]),
-                CodesRef::F32(codes) => CodesRef::F32(&codes[range]),
-            },
-        )?;
-    }
+    let sink = create_normals(path, Size::new(width, height)?, format)?;
+    write_rows(sink, 0..height, codes, width * format.channels.count())
+}
+
+/// Writes rows of `row` codes one by one, in this order.
+pub fn write_rows(
+    mut sink: Box<dyn RowSink>,
+    order: impl IntoIterator<Item = usize>,
+    codes: CodesRef,
+    row: usize,
+) -> Result<(), Error> {
+    order.into_iter().try_for_each(|y| sink.write(y, codes.slice(y * row..(y + 1) * row)))?;
     sink.finish()
 }
 

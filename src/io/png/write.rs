@@ -122,19 +122,19 @@ impl RowEncoder for PngEncoder {
 impl PngEncoder {
     /// Brings a row of codes into the file's channels and byte order.
     fn samples(&mut self, codes: &[u8]) {
-        let big_endian = |code: &[u8]| u16::from_ne_bytes([code[0], code[1]]).to_be_bytes();
         let texels = self.current.chunks_exact_mut(self.texel_bytes);
         match (self.depth, self.channels) {
             (Depth::Bits8, 2) => {
                 texels.zip(codes.chunks_exact(2)).for_each(|(rgb, xy)| rgb.copy_from_slice(&[xy[0], xy[1], 0]));
             }
             (Depth::Bits8, _) => self.current.copy_from_slice(codes),
-            (_, channels) => {
-                for (texel, codes) in texels.zip(codes.chunks_exact(2 * channels)) {
-                    texel[2 * channels..].fill(0);
-                    let samples = texel.chunks_exact_mut(2).zip(codes.chunks_exact(2));
-                    samples.for_each(|(sample, code)| sample.copy_from_slice(&big_endian(code)));
-                }
+            (_, 2) => texels.zip(codes.chunks_exact(4)).for_each(|(rgb, xy)| {
+                let (x, y) = (big_endian(&xy[..2]), big_endian(&xy[2..]));
+                rgb.copy_from_slice(&[x[0], x[1], y[0], y[1], 0, 0]);
+            }),
+            _ => {
+                let samples = self.current.chunks_exact_mut(2).zip(codes.chunks_exact(2));
+                samples.for_each(|(sample, code)| sample.copy_from_slice(&big_endian(code)));
             }
         }
     }
@@ -149,6 +149,11 @@ impl PngEncoder {
         }
         self.stream.write(&self.filtered);
     }
+}
+
+/// A 16-bit code, most significant byte first, as PNG stores it.
+fn big_endian(code: &[u8]) -> [u8; 2] {
+    u16::from_ne_bytes([code[0], code[1]]).to_be_bytes()
 }
 
 /// Each byte less the one a texel to its left.

@@ -108,7 +108,7 @@ fn colours(path: &Path, decoder: &mut Decoder<BufReader<File>>) -> Result<(usize
         ColorType::Multiband { num_samples, .. } => Ok((num_samples.into(), false)),
         other => {
             let reason = format!("its colours are {other:?}, not grey or RGB");
-            Err(Error::file(path, reason, "convert it to grey"))
+            Err(Error::file(path, reason, "convert it to grey or RGB"))
         }
     }
 }
@@ -238,7 +238,7 @@ fn reason(path: &Path) -> impl FnOnce(TiffError) -> Error + '_ {
             Error::file(path, "it needs more memory than the limit", "raise it with --max-bytes")
         }
         TiffError::UnsupportedError(error) => {
-            Error::file(path, error, "convert it to 8 or 16-bit grey, or to 32-bit floats")
+            Error::file(path, error, "convert it to 8 or 16-bit grey or RGB, or to 32-bit floats")
         }
         error => damaged(path, error),
     }
