@@ -32,6 +32,8 @@ pub enum Command {
     Parallax(Box<ParallaxArguments>),
     Bake(Box<BakeArguments>),
     Blend(Box<BlendArguments>),
+    Check(Box<super::check::CheckArguments>),
+    Diff(Box<super::diff::DiffArguments>),
     Devices(DevicesArguments),
 }
 

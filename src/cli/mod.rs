@@ -3,8 +3,10 @@
 mod args;
 mod bake;
 mod blend;
+mod check;
 mod config;
 mod devices;
+mod diff;
 mod exit;
 mod normal;
 mod parallax;
@@ -29,6 +31,8 @@ pub fn run() -> ExitCode {
         Command::Parallax(arguments) => parallax::parallax(arguments),
         Command::Bake(arguments) => bake::bake(arguments),
         Command::Blend(arguments) => blend::blend(arguments),
+        Command::Check(arguments) => check::check(arguments),
+        Command::Diff(arguments) => diff::diff(arguments),
         Command::Devices(arguments) => devices::devices(arguments),
     };
     let exit = done.unwrap_or_else(|failure| {
