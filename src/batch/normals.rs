@@ -1,9 +1,9 @@
 //! Normal maps on their way into another map.
 
 use crate::error::{Error, Result};
-use crate::exact::CodeReading;
+use crate::inspect::{Census, Counted};
 use crate::io::{NormalReadOptions, open_normals};
-use crate::map::{Channels, CodesMut, CodesRef, NormalFormat, Size};
+use crate::map::{CodesMut, NormalFormat, Size};
 use crate::stream::{NormalRows, NormalSource, check_components};
 use serde::Serialize;
 use std::cell::{Cell, RefCell};
@@ -19,15 +19,19 @@ pub struct NormalInput {
     pub read: NormalReadOptions,
 }
 
-/// Texels of a normal map that are no normals of a height map.
+/// Texels of a normal map that are no unit normals of a height map: see [`Census`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Degenerate {
     /// Texels of the map.
     pub texels: u64,
-    /// Those whose z is not above zero: it counts as the least above zero. Two-channel maps have none.
-    pub z_not_positive: u64,
-    /// Those of them whose components are all zero.
+    /// Those with a stored z below zero; it counts as the least above zero, like one of zero.
+    pub below_zero: u64,
+    /// Those with a stored z of zero, and something in x or y.
+    pub at_zero: u64,
+    /// Those with nothing at all.
     pub zero_vectors: u64,
+    /// Those whose length rounding cannot explain.
+    pub non_unit: u64,
 }
 
 /// What is known of a normal map that is read.
@@ -35,12 +39,12 @@ pub(super) struct Watch<'a> {
     input: &'a NormalInput,
     warnings: RefCell<Vec<String>>,
     format: Cell<Option<NormalFormat>>,
-    degenerate: Arc<Mutex<Degenerate>>,
+    census: RefCell<Option<Arc<Mutex<Census>>>>,
 }
 
 impl NormalInput {
     pub(super) fn watch(&self) -> Watch<'_> {
-        Watch { input: self, warnings: RefCell::default(), format: Cell::default(), degenerate: Arc::default() }
+        Watch { input: self, warnings: RefCell::default(), format: Cell::default(), census: RefCell::default() }
     }
 }
 
@@ -50,9 +54,9 @@ impl Watch<'_> {
         let file = open_normals(&self.input.path, &self.input.read)?;
         *self.warnings.borrow_mut() = file.warnings;
         self.format.set(Some(file.rows.format()));
-        *self.degenerate.lock().unwrap_or_else(PoisonError::into_inner) = Degenerate::default();
-        let (path, degenerate) = (self.input.path.clone(), self.degenerate.clone());
-        Ok(Box::new(Watched { rows: file.rows, path, next_row: 0, degenerate }))
+        let (rows, census) = Counted::new(file.rows);
+        *self.census.borrow_mut() = Some(census);
+        Ok(Box::new(Named { rows, path: self.input.path.clone(), next_row: 0 }))
     }
 
     /// What its codes mean; `None` if it was never opened.
@@ -62,34 +66,57 @@ impl Watch<'_> {
 
     /// What was counted so far.
     pub fn degenerate(&self) -> Degenerate {
-        *self.degenerate.lock().unwrap_or_else(PoisonError::into_inner)
+        let census = self.census.borrow();
+        census.as_ref().map_or(Degenerate::default(), |census| {
+            let census = census.lock().unwrap_or_else(PoisonError::into_inner);
+            Degenerate {
+                texels: census.texels,
+                below_zero: census.below_zero.count,
+                at_zero: census.at_zero.count,
+                zero_vectors: census.zero_vectors.count,
+                non_unit: census.non_unit.count,
+            }
+        })
     }
 
     /// What looks wrong, each with the name of the file.
     pub fn warnings(&self) -> Vec<String> {
-        let Degenerate { texels, z_not_positive, zero_vectors } = self.degenerate();
-        let counted = (z_not_positive > 0).then(|| {
-            let zero = if zero_vectors > 0 { format!(", {zero_vectors} of them zero vectors") } else { String::new() };
-            format!(
-                "{z_not_positive} of {texels} normals do not point out of the surface (z is not above zero){zero}; \
-                 their z counts as the least above zero. Is it a normal map, with the right encoding?"
-            )
-        });
+        let found = self.degenerate().warning();
         let warnings = self.warnings.borrow();
-        let texts = warnings.iter().cloned().chain(counted);
+        let texts = warnings.iter().chain(&found);
         texts.map(|text| format!("{}: {text}", self.input.path.display())).collect()
     }
 }
 
-/// Rows that are counted as they pass.
-struct Watched {
-    rows: NormalRows,
-    path: PathBuf,
-    next_row: usize,
-    degenerate: Arc<Mutex<Degenerate>>,
+impl Degenerate {
+    /// One line about what was found, and what it means for the result.
+    fn warning(&self) -> Option<String> {
+        let counts = [
+            (self.below_zero, "z below zero"),
+            (self.at_zero, "z of zero"),
+            (self.zero_vectors, "no component but zero"),
+            (self.non_unit, "a length other than 1"),
+        ];
+        let found = counts.iter().filter(|(count, _)| *count > 0);
+        let found: Vec<String> = found.map(|(count, what)| format!("{count} with {what}")).collect();
+        (!found.is_empty()).then(|| {
+            let texels = self.texels;
+            format!(
+                "of {texels} normals {}; a z not above zero counts as the least above zero, and texbake check says more",
+                found.join(", ")
+            )
+        })
+    }
 }
 
-impl NormalSource for Watched {
+/// Rows whose errors name their file: a job reads two maps.
+struct Named {
+    rows: Counted,
+    path: PathBuf,
+    next_row: usize,
+}
+
+impl NormalSource for Named {
     fn size(&self) -> Size {
         self.rows.size()
     }
@@ -104,47 +131,15 @@ impl NormalSource for Watched {
         let (format, width) = (self.format(), self.size().width());
         check_components(rows.as_ref(), format, width, self.next_row).map_err(|error| self.named(error))?;
         self.next_row += rows.len() / format.texel().row_codes(width);
-        self.degenerate.lock().unwrap_or_else(PoisonError::into_inner).count(rows.as_ref(), format);
         Ok(())
     }
 }
 
-impl Watched {
+impl Named {
     /// An error about a texel as one about a texel of this file: there are two maps.
     fn named(&self, error: Error) -> Error {
         let text = error.to_string();
         let (reason, remedy) = text.split_once("; ").unwrap_or((&text, ""));
         Error::file(&self.path, reason, remedy)
-    }
-}
-
-impl Degenerate {
-    /// Counts these texels.
-    fn count(&mut self, codes: CodesRef<'_>, format: NormalFormat) {
-        self.texels += (codes.len() / format.channels.count()) as u64;
-        if format.channels == Channels::Xy {
-            return;
-        }
-        let reading = CodeReading::new(format.texel());
-        let component = |code: u32| reading.map_or(0, |reading| reading.component(code));
-        match codes {
-            CodesRef::U8(codes) => self.count_texels(codes, |code| component(code.into())),
-            CodesRef::U16(codes) => self.count_texels(codes, |code| component(code.into())),
-            CodesRef::F16(codes) => self.count_texels(codes, |code| code.to_f32()),
-            CodesRef::F32(codes) => self.count_texels(codes, |code| code),
-        }
-    }
-
-    #[inline(always)]
-    fn count_texels<T: Copy, C: PartialOrd + Default>(&mut self, codes: &[T], component: impl Fn(T) -> C) {
-        let zero = C::default();
-        for &[x, y, z] in codes.as_chunks::<3>().0 {
-            let z = component(z);
-            if z > zero {
-                continue;
-            }
-            self.z_not_positive += 1;
-            self.zero_vectors += u64::from(z == zero && component(x) == zero && component(y) == zero);
-        }
     }
 }

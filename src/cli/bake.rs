@@ -16,7 +16,7 @@ use std::thread::available_parallelism;
 use std::time::Instant;
 use texbake::batch::{Found, Job, JsonFile, MapKind, Report, Search, run};
 use texbake::io::ReadOptions;
-use texbake::{BakeOptions, Convention, Error, Maps, ParallaxFormat};
+use texbake::{BakeOptions, Error, Maps, ParallaxFormat};
 
 pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     let reporting = &arguments.reporting;
@@ -98,7 +98,7 @@ impl Chosen {
         let (name, format) = (each.name.clone().unwrap_or_default(), each.format.as_deref().unwrap_or("png"));
         let outputs = name.outputs(map, maps, out, format)?;
         let place = settings.device.place()?;
-        let normal = outputs.normal.as_ref().map(|path| settings.normal.format(path, Convention::Gl)).transpose()?;
+        let normal = outputs.normal.as_ref().map(|path| settings.normal.format(path)).transpose()?;
         let parallax = outputs.parallax.as_ref().map(|path| parallax(each.parallax(), path)).transpose()?;
         let options = settings.slope.bake(normal, parallax)?;
         Ok(Self { outputs, place, options, read: settings.input.read() })

@@ -50,7 +50,7 @@ fn job(arguments: &BlendArguments, method: Method) -> Result<BlendJob, Failure> 
     let options = BlendOptions {
         method: formula.formula(method)?,
         tile: formula.tile,
-        format: arguments.normal.format(&arguments.output, Convention::Gl)?,
+        format: arguments.normal.format(&arguments.output)?,
         precision: formula.precision.unwrap_or_default(),
     };
     let max_bytes = max_bytes(inputs.max_bytes);

@@ -6,12 +6,12 @@ use super::settings::open_baker;
 use super::single::{ParallaxTelling, bake_one};
 use super::values::USUAL_ITERATIONS;
 use std::sync::Arc;
+use texbake::Maps;
 use texbake::batch::Job;
-use texbake::{Convention, Maps};
 
 pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
     let settings = &arguments.settings;
-    let format = settings.normal.format(&arguments.output, Convention::Gl)?;
+    let format = settings.normal.format(&arguments.output)?;
     let options = settings.slope.bake(Some(format), None)?;
     let job = Job {
         input: arguments.input.clone(),

@@ -4,7 +4,9 @@ use crate::cli::values::choice;
 use clap::Args;
 use std::path::Path;
 use texbake::io::{default_format, default_parallax_format};
-use texbake::{Channels, Codes, Convention, Depth, Encoding, NormalFormat, ParallaxFormat, ParallaxMap, Result, Size};
+use texbake::{
+    Channels, Codes, Convention, Depth, Encoding, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Result, Size,
+};
 
 /// What was set of a normal map.
 #[derive(Args, Debug, Clone, Default, PartialEq)]
@@ -43,14 +45,16 @@ impl NormalOutput {
         Self { encoding, bits, channels, convention: self.convention.or(weaker.convention) }
     }
 
-    /// The format of the normal map `output`; green as `convention` has it where nothing else was set.
+    /// The format of the normal map `output`.
     ///
     /// # Errors
-    /// What the extension of `output` has to say.
-    pub fn format(&self, output: &Path, convention: Convention) -> Result<NormalFormat> {
+    /// [`texbake::Error::Parameter`] if encoding and bits do not go together; what the extension of `output` has to say.
+    pub fn format(&self, output: &Path) -> Result<NormalFormat> {
         let (encoding, depth) = self.codes().resolve(default_format(output)?, Encoding::Unorm);
-        let channels = self.channels.unwrap_or_default();
-        Ok(NormalFormat { encoding, depth, channels, convention: self.convention.unwrap_or(convention) })
+        let (channels, convention) = (self.channels.unwrap_or_default(), self.convention.unwrap_or_default());
+        let format = NormalFormat { encoding, depth, channels, convention };
+        // A map of one texel is refused as every map would be.
+        NormalMap::new(Size::new(1, 1)?, format, Codes::zeroed(depth, channels.count())).map(|_| format)
     }
 
     fn codes(&self) -> CodeChoice {
