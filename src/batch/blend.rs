@@ -1,5 +1,6 @@
 //! Two normal maps that become one.
 
+use super::heights::HeightWatch;
 use super::job::create_folder_of;
 use super::normals::{Degenerate, NormalInput};
 use super::outcome::Outcome;
@@ -7,12 +8,11 @@ use super::report::{RunReport, as_text};
 use super::targets::{self, Files};
 use crate::baker::{Baker, Blended};
 use crate::error::{Error, Result};
-use crate::io::{ReadOptions, create_normals, open_heights};
+use crate::io::{ReadOptions, create_normals};
 use crate::map::{NormalFormat, Size};
 use crate::ops::blend::{BlendInputs, BlendOptions};
 use crate::stream::{Monitor, NormalRows};
 use serde::Serialize;
-use std::cell::RefCell;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -85,26 +85,22 @@ impl BlendJob {
         }
         let layers = [self.base.watch(), self.detail.watch()];
         let outcome = Outcome::of(&files, |warnings| {
-            let mask_warnings = RefCell::new(Vec::new());
+            let mask = self.mask.as_ref().map(|mask| HeightWatch::new(&mask.path, &mask.read));
             let open = || {
                 let [base, detail] = [layers[0].open()?, layers[1].open()?];
                 self.check_tile(&base, &detail)?;
-                let mask = self.mask.as_ref().map(|mask| {
-                    let file = open_heights(&mask.path, &mask.read)?;
-                    let named = file.warnings.into_iter().map(|text| format!("{}: {text}", mask.path.display()));
-                    *mask_warnings.borrow_mut() = named.collect();
-                    Ok(file.rows)
-                });
+                let mask = mask.as_ref().map(|mask| mask.open(false)).transpose()?;
                 opened(base.size());
-                Ok(BlendInputs { base, detail, mask: mask.transpose()? })
+                Ok(BlendInputs { base, detail, mask })
             };
             let create = |size| {
                 create_folder_of(&self.output)?;
                 create_normals(&self.output, size, self.options.format)
             };
             let blended = self.baker.blend_rows(&open, &create, &self.options, monitor);
-            warnings.extend(layers.iter().flat_map(|layer| layer.warnings()));
-            warnings.extend(mask_warnings.take());
+            let all_read = blended.is_ok();
+            warnings.extend(layers.iter().flat_map(|layer| layer.warnings(all_read)));
+            warnings.extend(mask.iter().flat_map(|mask| mask.named_warnings()));
             warnings.extend(blended.as_ref().ok().and_then(inexact_weights));
             blended
         });

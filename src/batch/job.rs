@@ -1,18 +1,17 @@
 //! Files baked side by side.
 
-use super::heights::Counted;
+use super::heights::HeightWatch;
 use super::normals::NormalInput;
 use super::outcome::Outcome;
 use super::targets::{self, Files};
 use crate::baker::{Baked, Baker, Maps};
 use crate::error::{Error, Result};
-use crate::io::{ReadOptions, create_normals, create_parallax, open_heights};
-use crate::map::{HeightType, Size};
+use crate::io::{ReadOptions, create_normals, create_parallax};
+use crate::map::Size;
 use crate::ops::bake::BakeOptions;
-use crate::stream::{HeightRows, Monitor, RowsOut};
-use std::cell::{Cell, RefCell};
+use crate::stream::{Monitor, RowsOut};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 
 /// One height map to bake.
@@ -109,8 +108,12 @@ impl Job {
     }
 
     fn bake(&self, monitor: &Monitor, opened: &dyn Fn(Size), warnings: &mut Vec<String>) -> Result<Baked> {
-        let heights = Heights::default();
-        let open = || heights.open(self, opened);
+        let heights = HeightWatch::new(&self.input, &self.read);
+        let open = || {
+            let rows = heights.open(self.options.parallax.is_some())?;
+            opened(rows.size());
+            Ok(rows)
+        };
         let baked = self.baker.bake_rows(&open, &|size| self.create(size), &self.options, monitor);
         warnings.extend(heights.warnings(baked.is_ok()));
         warnings.extend(baked.as_ref().ok().and_then(inexact_scale));
@@ -129,19 +132,22 @@ impl Job {
         else {
             return Err(Error::parameter("maps", "with a normal map given", "parallax alone"));
         };
-        let heights = Heights::default();
-        let watch = normals.watch();
-        let open = || Ok((heights.open(self, opened)?, watch.open()?));
+        let (heights, normals) = (HeightWatch::new(&self.input, &self.read), normals.watch());
+        let open = || {
+            let rows = heights.open(true)?;
+            opened(rows.size());
+            Ok((rows, normals.open()?))
+        };
         let create = |size| {
             let Maps { parallax, .. } = self.create(size)?;
             parallax.ok_or_else(|| Error::parameter("maps", "none", "parallax"))
         };
         let ran = self.baker.parallax_with_normals_rows(&open, &create, (format, self.options.precision), monitor);
         warnings.extend(heights.warnings(ran.is_ok()));
-        warnings.extend(watch.warnings().into_iter().map(|text| format!("the normal map {text}")));
+        warnings.extend(normals.warnings(ran.is_ok()).into_iter().map(|text| format!("the normal map {text}")));
         let ran = ran?;
         let scale = self.options.scale.resolve(ran.size)?;
-        let baked = Baked { ran, height_type: heights.height_type.get(), scale };
+        let baked = Baked { ran, height_type: heights.height_type(), scale };
         warnings.extend(inexact_scale(&baked));
         Ok(baked)
     }
@@ -163,45 +169,6 @@ impl Job {
 pub(super) fn create_folder_of(file: &Path) -> Result<()> {
     let folder = file.parent().unwrap_or(Path::new(""));
     std::fs::create_dir_all(folder).map_err(Error::io(folder))
-}
-
-/// What is known of a job's heights.
-struct Heights {
-    warnings: RefCell<Vec<String>>,
-    height_type: Cell<HeightType>,
-    beyond: Arc<AtomicU64>,
-}
-
-impl Default for Heights {
-    fn default() -> Self {
-        Self { warnings: RefCell::default(), height_type: Cell::new(HeightType::U8), beyond: Arc::default() }
-    }
-}
-
-impl Heights {
-    fn open(&self, job: &Job, opened: &dyn Fn(Size)) -> Result<HeightRows> {
-        let file = open_heights(&job.input, &job.read)?;
-        *self.warnings.borrow_mut() = file.warnings;
-        self.height_type.set(file.rows.height_type());
-        opened(file.rows.size());
-        let is_counted = job.options.parallax.is_some();
-        Ok(if is_counted { Box::new(Counted::new(file.rows, &self.beyond)) } else { file.rows })
-    }
-
-    /// What looks wrong; heights are counted only if all of them were read.
-    fn warnings(&self, all_read: bool) -> Vec<String> {
-        let mut warnings = self.warnings.take();
-        let beyond = self.beyond.load(Relaxed);
-        if all_read && beyond > 0 {
-            let (heights, lie, count) =
-                if beyond == 1 { ("height", "lies", "counts") } else { ("heights", "lie", "count") };
-            warnings.push(format!(
-                "{beyond} {heights} {lie} outside 0 to 1 and {count} as 0 or 1 in the parallax map: shift and divide \
-                 them, and multiply --scale by the same number"
-            ));
-        }
-        warnings
-    }
 }
 
 /// Says so if the scale had to be rounded.

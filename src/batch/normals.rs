@@ -35,7 +35,7 @@ pub struct Degenerate {
 }
 
 /// What is known of a normal map that is read.
-pub(super) struct Watch<'a> {
+pub(super) struct NormalWatch<'a> {
     input: &'a NormalInput,
     warnings: RefCell<Vec<String>>,
     format: Cell<Option<NormalFormat>>,
@@ -43,12 +43,12 @@ pub(super) struct Watch<'a> {
 }
 
 impl NormalInput {
-    pub(super) fn watch(&self) -> Watch<'_> {
-        Watch { input: self, warnings: RefCell::default(), format: Cell::default(), census: RefCell::default() }
+    pub(super) fn watch(&self) -> NormalWatch<'_> {
+        NormalWatch { input: self, warnings: RefCell::default(), format: Cell::default(), census: RefCell::default() }
     }
 }
 
-impl Watch<'_> {
+impl NormalWatch<'_> {
     /// Opens the map; what was counted before belongs to another try.
     pub fn open(&self) -> Result<NormalRows> {
         let file = open_normals(&self.input.path, &self.input.read)?;
@@ -79,9 +79,9 @@ impl Watch<'_> {
         })
     }
 
-    /// What looks wrong, each with the name of the file.
-    pub fn warnings(&self) -> Vec<String> {
-        let found = self.degenerate().warning();
+    /// What looks wrong, each with the name of the file; counts mean something only if all rows were read.
+    pub fn warnings(&self, all_read: bool) -> Vec<String> {
+        let found = self.degenerate().warning().filter(|_| all_read);
         let warnings = self.warnings.borrow();
         let texts = warnings.iter().chain(&found);
         texts.map(|text| format!("{}: {text}", self.input.path.display())).collect()
@@ -99,13 +99,10 @@ impl Degenerate {
         ];
         let found = counts.iter().filter(|(count, _)| *count > 0);
         let found: Vec<String> = found.map(|(count, what)| format!("{count} with {what}")).collect();
-        (!found.is_empty()).then(|| {
-            let texels = self.texels;
-            format!(
-                "of {texels} normals {}; a z not above zero counts as the least above zero, and texbake check says more",
-                found.join(", ")
-            )
-        })
+        let is_raised = self.below_zero + self.at_zero + self.zero_vectors > 0;
+        let raised = if is_raised { " (z counts as the least above zero where it is not above it)" } else { "" };
+        let (texels, found) = (self.texels, Some(found.join(", ")).filter(|found| !found.is_empty())?);
+        Some(format!("{texels} normals, of them {found}{raised}; texbake check says more"))
     }
 }
 

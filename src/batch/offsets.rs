@@ -22,7 +22,7 @@ pub struct ParallaxNumbers {
     pub decode: Decoding,
     /// The same for parallax mapping with the height map itself.
     pub welsh: WelshNumbers,
-    /// A step in a shader (FGED2 listing 7.9).
+    /// The steps in a shader (FGED2 listing 7.9); `eye` is the unit tangent-space vector to the eye.
     pub shader: String,
 }
 

@@ -44,7 +44,7 @@ Examples:
   texbake normal height.png -o normal.png --scale 24
   texbake normal dem.tif -o normal.exr --scale 3.5 --edge clamp --filter scharr --convention dx
   texbake normal wall.png -o normal.png --size 2.0x2.0 --depth 0.1 --bits 16
-  texbake normal srtm.tif -o normal.png --size 108000x108000 --depth 65535 --edge clamp   (16 bits, metres)
+  texbake normal srtm.tif -o normal.png --size 108000x108000 --depth 65535 --edge clamp   (metres)
   texbake normal terrain.raw --raw 1025x1025:u16le -o normal.tif --edge clamp")]
 pub struct NormalArguments {
     /// Height map: PNG, TIFF, EXR, TGA, BMP, JPEG, WebP, or any file with --raw
@@ -68,14 +68,14 @@ pub struct NormalArguments {
 A PNG has no signed numbers: it holds biased codes, of which 128 (or 32768) is exactly zero, and
 v = (code - 128) / 127. TIFF holds snorm codes, EXR floats.
 
-What a shader needs goes into --json and --report: for each axis u = s / (2 k r) (FGED2 eq. 7.52), with
-the scale s in texels, k iterations and r texels of the map; and, to use the height map itself, Welsh's
-scale s / r and bias -s / (2 r). Welsh's text gives the bias a plus sign; the minus of his programs is
-right: a height of 1/2 moves nothing.
+What a shader needs goes into --json and --report: for each axis u = s / (2 k r) (FGED2 eq. 7.52),
+with the scale s in texels, k iterations and r texels of the map; and, to use the height map itself,
+Welsh's scale s / r and bias -s / (2 r). Welsh's text has the bias s / 2; the minus of his programs
+is right: a height of 1/2 must move nothing.
 
 Examples:
   texbake parallax height.png -o parallax.png --scale 24
-  texbake parallax height.png -o parallax.png --scale 24 --iterations 4 --json     (and parallax.json)
+  texbake parallax height.png -o parallax.png --scale 24 --iterations 4 --json
   texbake parallax height.png -o parallax.tif --scale 24 --bits 16 --normal normal.png")]
 pub struct ParallaxArguments {
     /// Height map: PNG, TIFF, EXR, TGA, BMP, JPEG, WebP, or any file with --raw
@@ -105,11 +105,12 @@ pub struct ParallaxArguments {
     #[arg(long, value_name = "K", default_value = "4", value_parser = iterations, help_heading = PARALLAX_MAP)]
     pub iterations: NonZeroU32,
 
-    /// Normal map of the same size that gives n_z, instead of the heights' own slopes
+    /// Normal map of the same size that gives n_z, instead of the heights' slopes; --scale is then for the numbers in
+    /// --json and --report
     #[arg(long, value_name = "FILE", conflicts_with_all = ["filter", "edge"], help_heading = GIVEN_NORMALS)]
     pub normal: Option<PathBuf>,
 
-    /// How its codes are read [default: unorm for unsigned integers, snorm for signed ones, float]
+    /// How its codes are read [default: unorm; snorm for signed integers, float for floats]
     #[arg(long, value_name = "ENCODING", value_parser = choice::<Encoding>(Encoding::NAMES), requires = "normal")]
     #[arg(help_heading = GIVEN_NORMALS)]
     pub normal_encoding: Option<Encoding>,
@@ -145,8 +146,9 @@ impl ParallaxArguments {
 Folders are searched for files such as wall_height.png, wall_disp_2k.exr or Wall_Displacement.tif;
 files are taken as they are. tex/brick/wall_height_2k.png becomes brick/wall_normal_2k.png in --out.
 
-Each setting comes from the command line, else from the last [[override]] in texbake.toml that has it
-and whose glob matches the file's path below the folder, else from [defaults]. A key is an option's name:
+Each setting comes from the command line, else from the last [[override]] in texbake.toml that has
+it and whose glob matches the file's path below the folder, else from [defaults]. A key is the name
+of an option:
 
   suffix = [\"_height\", \"_dem\"]
   [defaults]
@@ -247,12 +249,16 @@ impl PerFile {
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Methods, from the normals (x1, y1, z1) and (x2, y2, z2); all results are normalised:
-  add                 (x1/z1 + x2/z2, y1/z1 + y2/z2, 1): as if the height maps were added (FGED2 eq. 7.47)
-  weighted            (a x1/z1 + b x2/z2, a y1/z1 + b y2/z2, 1) (FGED2 eq. 7.46); --transition t is
-                      a = 1 - t and b = t, --mask the same with t of each texel
-  partial-derivative  the same formula by its name in Blending in Detail, a = b = 1 unless given
-  linear, overlay, udn, whiteout, rnm
-                      approximations, to compare with (Hill and Barré-Brisebois, Blending in Detail, 2012)
+  weighted            (a x1/z1 + b x2/z2, a y1/z1 + b y2/z2, 1), FGED2 eq. 7.46: as if the height
+                      maps were added with weights a and b; a negative weight takes bumps away
+  add                 the same with a = b = 1, FGED2 eq. 7.47
+  partial-derivative  the same, a = b = 1 unless given; the name is from Blending in Detail
+  linear              (x1 + x2, y1 + y2, z1 + z2)
+  overlay             v1 + v2 (1 - |v1|) for each component v
+  udn                 (x1 + x2, y1 + y2, z1)
+  whiteout            (x1 + x2, y1 + y2, z1 z2)
+  rnm                 the second normal turned as the first one is from (0, 0, 1)
+The last five are approximations, to compare with: Hill and Barré-Brisebois, Blending in Detail, 2012.
 
 Where z is not above zero it counts as the least above zero; such texels are counted and reported.
 
@@ -304,7 +310,7 @@ pub struct Formula {
     #[arg(help_heading = BLEND, conflicts_with_all = ["transition", "mask"])]
     pub weights: Option<WeightPair>,
 
-    /// From BASE at 0 to DETAIL at 1
+    /// Weights a = 1 - T and b = T: from BASE at 0 to DETAIL at 1
     #[arg(long, value_name = "T", value_parser = value::<Rational>, allow_hyphen_values = true)]
     #[arg(help_heading = BLEND, conflicts_with = "mask")]
     pub transition: Option<Rational>,
@@ -329,7 +335,7 @@ pub struct Formula {
 /// How the normal maps of a blend are read.
 #[derive(Args, Debug)]
 pub struct BlendInputArguments {
-    /// How BASE's codes are read [default: unorm for unsigned integers, snorm for signed ones, float]
+    /// How BASE's codes are read [default: unorm; snorm for signed integers, float for floats]
     #[arg(long, value_name = "ENCODING", value_parser = choice::<Encoding>(Encoding::NAMES))]
     #[arg(help_heading = INPUTS)]
     pub base_encoding: Option<Encoding>,
@@ -343,7 +349,7 @@ pub struct BlendInputArguments {
     #[arg(help_heading = INPUTS)]
     pub base_convention: Option<Convention>,
 
-    /// How DETAIL's codes are read [default: unorm for unsigned integers, snorm for signed ones, float]
+    /// How DETAIL's codes are read [default: unorm; snorm for signed integers, float for floats]
     #[arg(long, value_name = "ENCODING", value_parser = choice::<Encoding>(Encoding::NAMES))]
     #[arg(help_heading = INPUTS)]
     pub detail_encoding: Option<Encoding>,

@@ -4,7 +4,7 @@ use super::args::{BlendArguments, Formula, Method};
 use super::exit::{Exit, Failure};
 use super::interruptible;
 use super::print::{blend_line, say};
-use super::progress::{Ending, Progress, Verbosity};
+use super::progress::{Ending, Progress, Verbosity, fallback};
 use super::settings::{max_bytes, open_baker};
 use super::values::WeightPair;
 use clap::ValueEnum;
@@ -26,7 +26,13 @@ pub fn blend(arguments: &BlendArguments) -> Result<Exit, Failure> {
     let blended = progress.during(|| job.run(&monitor, &|size| progress.opened(0, size)));
     let outcome = &blended.outcome;
     let ran = outcome.result.as_ref().ok().map(|blended| &blended.ran);
-    progress.ended(0, ran, || Ending { line: None, failure: job.failure(outcome), warnings: outcome.warnings.clone() });
+    let ending = Ending {
+        line: None,
+        failure: job.failure(outcome),
+        warnings: outcome.warnings.iter().cloned().chain(ran.and_then(fallback)).collect(),
+        succeeded: ran.is_some(),
+    };
+    progress.ended(0, ending);
 
     let name = method.name();
     if !reporting.quiet {

@@ -49,6 +49,13 @@ pub struct Ending {
     pub failure: Option<String>,
     /// What looks wrong, with the names of the files.
     pub warnings: Vec<String>,
+    /// Whether its texels were worked on.
+    pub succeeded: bool,
+}
+
+/// What is said of work that a GPU left to the CPU.
+pub fn fallback(ran: &Ran) -> Option<String> {
+    ran.fallback.as_ref().map(|reason| format!("{reason}; the CPU did it instead"))
 }
 
 impl Verbosity {
@@ -94,12 +101,15 @@ impl<'a> Progress<'a> {
             Event::Ended { job: index, outcome } => {
                 let job = &jobs[index];
                 let ran = outcome.result.as_ref().ok().map(|baked| &baked.ran);
-                let named = |text: &String| format!("{}: {text}", job.input.display());
-                self.ended(index, ran, || Ending {
+                let fallback = ran.and_then(fallback);
+                let warnings = outcome.warnings.iter().chain(&fallback);
+                let ending = Ending {
                     line: Some(file_line(job, outcome)),
                     failure: job.failure(outcome),
-                    warnings: outcome.warnings.iter().map(named).collect(),
-                });
+                    warnings: warnings.map(|text| format!("{}: {text}", job.input.display())).collect(),
+                    succeeded: ran.is_some(),
+                };
+                self.ended(index, ending);
             }
         }
     }
@@ -109,14 +119,14 @@ impl<'a> Progress<'a> {
         self.state().texels[index] = Some(size.texels() as u64);
     }
 
-    /// Takes note of the end of the work on an input, and says so; `ran` is there if it went well.
-    pub fn ended(&self, index: usize, ran: Option<&Ran>, ending: impl FnOnce() -> Ending) {
+    /// Takes note of the end of the work on an input, and says so.
+    pub fn ended(&self, index: usize, ending: Ending) {
         let mut state = self.state();
         state.ended += 1;
-        if ran.is_none() {
+        if !ending.succeeded {
             (state.bytes[index], state.texels[index]) = (0, Some(0));
         }
-        let (files, ending) = (state.texels.len(), ending());
+        let files = state.texels.len();
         let place = format!("{:>1$}/{files}", state.ended, files.to_string().len());
         let shows_line = self.verbosity == Verbosity::Files && self.bar.is_none();
         let mut lines: Vec<String> = match (shows_line, ending.line, ending.failure) {
@@ -125,8 +135,6 @@ impl<'a> Progress<'a> {
         };
         if self.verbosity != Verbosity::Quiet {
             lines.extend(ending.warnings.iter().map(|text| format!("warning: {text}")));
-            let fallback = ran.and_then(|ran| ran.fallback.as_ref());
-            lines.extend(fallback.map(|reason| format!("warning: {reason}; the CPU did it instead")));
         }
         let print = || lines.iter().for_each(say);
         self.bar.as_ref().map_or_else(print, |bar| bar.suspend(print));

@@ -281,8 +281,9 @@ fn texels_that_are_no_normals_are_counted() {
     let even = base(&folder, "a.png", 3, 2);
     let run = folder.run(&["blend", "a.png", "odd.png", "-o", "n.png", "--report", "r.json"]).ends(0);
     assert_blended(&folder, "n.png", (&even, &odd, None), &BlendOptions::default());
-    let warning = "odd.png: of 6 normals 2 with z below zero, 1 with z of zero, 1 with no component but zero, 1 with a \
-                   length other than 1; a z not above zero counts as the least above zero, and texbake check says more";
+    let warning = "odd.png: 6 normals, of them 2 with z below zero, 1 with z of zero, 1 with no component but zero, 1 \
+                   with a length other than 1 (z counts as the least above zero where it is not above it); texbake \
+                   check says more";
     run.line(&format!("warning: {warning}"));
     let report = folder.json("r.json");
     assert_eq!(report["warnings"], json!([warning]));
