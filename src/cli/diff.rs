@@ -146,11 +146,12 @@ fn lines(difference: &Difference) -> String {
     let differing = format!("{} of {} texels differ ({:.4}%)", difference.differing, difference.size, 100.0 * share);
     let codes = difference.codes.as_ref().map(code_line);
     let codes = codes.unwrap_or_else(|| "codes: of different formats, not compared".into());
-    let angles = difference.largest.map(|(degrees, at)| {
-        format!(
+    let angles = difference.largest.map(|(degrees, at)| match degrees {
+        0.0 => "angle: 0 degrees everywhere".into(),
+        _ => format!(
             "angle: largest {degrees:.6} degrees at {at}, 99th percentile {:.6}, mean {:.6}",
             difference.percentile_99, difference.mean
-        )
+        ),
     });
     let no_angle = match difference.no_angle {
         0 => None,

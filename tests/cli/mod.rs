@@ -1,5 +1,7 @@
 //! The program itself, run in folders of its own.
 
+mod check;
+mod diff;
 mod errors;
 mod folder;
 mod help;
