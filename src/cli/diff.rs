@@ -39,7 +39,7 @@ pub struct DiffArguments {
     pub b: PathBuf,
 
     /// Largest angle that is no difference; 0: the same codes
-    #[arg(long, value_name = "DEGREES", value_parser = angle, default_value = "0")]
+    #[arg(long, value_name = "DEGREES", value_parser = angle, allow_hyphen_values = true, default_value = "0")]
     pub tolerance: f64,
 
     /// Paint the angles into a picture: .png, or .tif
@@ -47,7 +47,7 @@ pub struct DiffArguments {
     pub heatmap: Option<PathBuf>,
 
     /// Angle that is white in the heatmap [default: the largest]
-    #[arg(long, value_name = "DEGREES", value_parser = angle, requires = "heatmap")]
+    #[arg(long, value_name = "DEGREES", value_parser = angle, allow_hyphen_values = true, requires = "heatmap")]
     pub heatmap_max: Option<f64>,
 
     /// Print JSON

@@ -64,13 +64,8 @@ fn heights_baked_with_the_wrong_edge_are_found_beside_the_seam() {
     let found = seams(&bake(&rising, Edge::Wrap));
     assert_eq!(found.len(), 1, "{found:?}");
     assert!(found[0].1.starts_with("rows 0 and 1, at the edge, do not fit: "), "{found:?}");
-    // Heights that tile, but were clamped, have half their slope at the edge.
-    let plane = HeightMap::from(
-        Grid::from_fn(64, 64, |x, y| {
-            ((x * 1000) as f64 + 3000.0 * (y as f64 / 64.0 * std::f64::consts::TAU).sin() + 3000.0) as u16
-        })
-        .unwrap(),
-    );
+    // Heights that were clamped have half their slope at the edge.
+    let plane = HeightMap::from(Grid::from_fn(64, 64, |x, _| 1000 * x as u16).unwrap());
     let found = seams(&bake(&plane, Edge::Clamp));
     assert_eq!(found.len(), 1, "{found:?}");
     assert!(found[0].1.starts_with("columns 0 and 1, at the edge, do not fit: "), "{found:?}");
