@@ -39,7 +39,7 @@ pub struct DiffArguments {
     pub b: PathBuf,
 
     /// Largest angle that is no difference; 0: the same codes
-    #[arg(long, value_name = "DEGREES", value_parser = angle, default_value = "0")]
+    #[arg(long, value_name = "DEGREES", value_parser = angle, allow_hyphen_values = true, default_value = "0")]
     pub tolerance: f64,
 
     /// Paint the angles into a picture: .png, or .tif
@@ -47,7 +47,7 @@ pub struct DiffArguments {
     pub heatmap: Option<PathBuf>,
 
     /// Angle that is white in the heatmap [default: the largest]
-    #[arg(long, value_name = "DEGREES", value_parser = angle, requires = "heatmap")]
+    #[arg(long, value_name = "DEGREES", value_parser = angle, allow_hyphen_values = true, requires = "heatmap")]
     pub heatmap_max: Option<f64>,
 
     /// Print JSON
@@ -146,11 +146,12 @@ fn lines(difference: &Difference) -> String {
     let differing = format!("{} of {} texels differ ({:.4}%)", difference.differing, difference.size, 100.0 * share);
     let codes = difference.codes.as_ref().map(code_line);
     let codes = codes.unwrap_or_else(|| "codes: of different formats, not compared".into());
-    let angles = difference.largest.map(|(degrees, at)| {
-        format!(
+    let angles = difference.largest.map(|(degrees, at)| match degrees {
+        0.0 => "angle: 0 degrees everywhere".into(),
+        _ => format!(
             "angle: largest {degrees:.6} degrees at {at}, 99th percentile {:.6}, mean {:.6}",
             difference.percentile_99, difference.mean
-        )
+        ),
     });
     let no_angle = match difference.no_angle {
         0 => None,

@@ -1,6 +1,8 @@
 //! The program itself, run in folders of its own.
 
 mod blend;
+mod check;
+mod diff;
 mod errors;
 mod folder;
 mod help;
