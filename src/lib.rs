@@ -92,6 +92,7 @@ pub mod gpu {
     /// The version that [`Hosted`] works with.
     pub use wgpu;
 }
+pub mod inspect;
 pub mod io;
 mod map;
 mod names;

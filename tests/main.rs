@@ -4,6 +4,7 @@
 mod cli;
 #[cfg(feature = "gpu")]
 mod gpu;
+mod inspect;
 mod io;
 mod normal;
 mod oracle;

@@ -1,49 +1,34 @@
 //! Files baked side by side.
 
-use super::targets;
-use crate::baker::{Baked, Baker};
+use super::heights::HeightWatch;
+use super::normals::NormalInput;
+use super::outcome::Outcome;
+use super::targets::{self, Files};
+use crate::baker::{Baked, Baker, Maps};
 use crate::error::{Error, Result};
-use crate::io::{ReadOptions, create_normals, open_heights};
+use crate::io::{ReadOptions, create_normals, create_parallax};
 use crate::map::Size;
-use crate::ops::bake::NormalOptions;
-use crate::stream::Monitor;
-use std::any::Any;
-use std::cell::RefCell;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use crate::ops::bake::BakeOptions;
+use crate::stream::{Monitor, RowsOut};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
-use std::time::{Duration, Instant};
 
-/// One file to bake.
+/// One height map to bake.
 #[derive(Clone)]
 pub struct Job {
     /// The height map file.
     pub input: PathBuf,
-    /// The normal map file; its folders are created.
-    pub output: PathBuf,
+    /// The files of its maps, those that `options` ask for; their folders are created.
+    pub outputs: Maps<PathBuf>,
+    /// A normal map from which a parallax map, baked alone, takes its normals; `None`: those of the heights.
+    pub normals: Option<NormalInput>,
     /// How the input is read.
     pub read: ReadOptions,
-    /// What is baked.
-    pub options: NormalOptions,
+    /// What is baked. Filter and edges do not matter to a parallax map with a given normal map.
+    pub options: BakeOptions,
     /// Where it runs.
     pub baker: Arc<Baker>,
-}
-
-/// What became of a job.
-#[derive(Debug)]
-pub struct Outcome {
-    /// How it ran; [`Error::Cancelled`] if it was stopped or never begun, [`Error::File`] if its output would overwrite
-    /// an input, or is the output of another job too.
-    pub result: Result<Baked>,
-    /// What the user should know about the file.
-    pub warnings: Vec<String>,
-    /// From opening the input to closing the output; `None` if the input was never opened.
-    pub time: Option<Duration>,
-    /// Bytes of the input file.
-    pub bytes_in: u64,
-    /// Bytes of the output file; zero if there is none.
-    pub bytes_out: u64,
 }
 
 /// What happens while jobs run.
@@ -67,14 +52,14 @@ pub enum Event<'a> {
 
 /// Runs `jobs`, `at_once` of them at a time, in their order; one that fails does not stop the others.
 ///
-/// A job whose output would overwrite an input fails unopened, and so do all jobs that share one output.
+/// A job with an output that would overwrite an input fails unopened, and so do all jobs that share one output.
 ///
 /// Each is a stream of its own: its file is read, baked and written at the same time. `watch` is called from many
 /// threads. The outcomes come back in the order of the jobs.
 pub fn run(jobs: &[Job], at_once: usize, monitor: &Monitor, watch: &(dyn Fn(Event<'_>) + Sync)) -> Vec<Outcome> {
     let next = AtomicUsize::new(0);
     let unopened = |error| OnceLock::from(Outcome::unopened(error));
-    let refusals = targets::refusals(jobs).into_iter();
+    let refusals = targets::refusals(&Job::all_files(jobs)).into_iter();
     let outcomes: Vec<OnceLock<Outcome>> =
         refusals.map(|refusal| refusal.map_or_else(OnceLock::new, unopened)).collect();
     let work = || {
@@ -98,69 +83,96 @@ pub fn run(jobs: &[Job], at_once: usize, monitor: &Monitor, watch: &(dyn Fn(Even
 }
 
 impl Job {
+    /// What it reads and writes.
+    pub fn files(&self) -> Files<'_> {
+        let normals = self.normals.iter().map(|normals| normals.path.as_path());
+        let inputs = [self.input.as_path()].into_iter().chain(normals).collect();
+        Files { inputs, outputs: self.outputs.iter().map(PathBuf::as_path).collect() }
+    }
+
+    /// What each of `jobs` reads and writes.
+    pub fn all_files(jobs: &[Self]) -> Vec<Files<'_>> {
+        jobs.iter().map(Self::files).collect()
+    }
+
     /// Why it failed, with the name of the file; `None` if it did not.
     pub fn failure(&self, outcome: &Outcome) -> Option<String> {
-        match outcome.result.as_ref().err()? {
-            Error::Cancelled => None,
-            error @ (Error::Io { .. } | Error::File { .. } | Error::TooLarge { .. }) => Some(error.to_string()),
-            error => Some(format!("{}: {error}", self.input.display())),
-        }
+        outcome.failure(self.input.display())
     }
 
     fn run(&self, monitor: &Monitor, opened: &dyn Fn(Size)) -> Outcome {
-        let start = Instant::now();
-        let warnings = RefCell::new(Vec::new());
+        Outcome::of(&self.files(), |warnings| match &self.normals {
+            None => self.bake(monitor, opened, warnings),
+            Some(normals) => self.bake_with(normals, monitor, opened, warnings),
+        })
+    }
+
+    fn bake(&self, monitor: &Monitor, opened: &dyn Fn(Size), warnings: &mut Vec<String>) -> Result<Baked> {
+        let heights = HeightWatch::new(&self.input, &self.read);
         let open = || {
-            let file = open_heights(&self.input, &self.read)?;
-            *warnings.borrow_mut() = file.warnings;
-            opened(file.rows.size());
-            Ok(file.rows)
+            let rows = heights.open(self.options.parallax.is_some())?;
+            opened(rows.size());
+            Ok(rows)
+        };
+        let baked = self.baker.bake_rows(&open, &|size| self.create(size), &self.options, monitor);
+        warnings.extend(heights.warnings(baked.is_ok()));
+        warnings.extend(baked.as_ref().ok().and_then(inexact_scale));
+        baked
+    }
+
+    fn bake_with(
+        &self,
+        normals: &NormalInput,
+        monitor: &Monitor,
+        opened: &dyn Fn(Size),
+        warnings: &mut Vec<String>,
+    ) -> Result<Baked> {
+        let (Maps { normal: None, parallax: Some(_) }, Some(format), None) =
+            (&self.outputs, self.options.parallax, self.options.normal)
+        else {
+            return Err(Error::parameter("maps", "with a normal map given", "parallax alone"));
+        };
+        let (heights, normals) = (HeightWatch::new(&self.input, &self.read), normals.watch());
+        let open = || {
+            let rows = heights.open(true)?;
+            opened(rows.size());
+            Ok((rows, normals.open()?))
         };
         let create = |size| {
-            let folder = self.output.parent().unwrap_or(Path::new(""));
-            std::fs::create_dir_all(folder).map_err(Error::io(folder))?;
-            create_normals(&self.output, size, self.options.format)
+            let Maps { parallax, .. } = self.create(size)?;
+            parallax.ok_or_else(|| Error::parameter("maps", "none", "parallax"))
         };
-        // A fault in the code for one file must not take the other files with it.
-        let result = catch_unwind(AssertUnwindSafe(|| self.baker.normal_rows(&open, &create, &self.options, monitor)))
-            .unwrap_or_else(|panic| Err(fault(&self.input, panic.as_ref())));
-        let mut warnings = warnings.take();
-        warnings.extend(result.as_ref().ok().and_then(inexact_scale));
-        let bytes = |path: &Path| std::fs::metadata(path).map_or(0, |file| file.len());
-        let bytes_out = if result.is_ok() { bytes(&self.output) } else { 0 };
-        Outcome { result, warnings, time: Some(start.elapsed()), bytes_in: bytes(&self.input), bytes_out }
+        let ran = self.baker.parallax_with_normals_rows(&open, &create, (format, self.options.precision), monitor);
+        warnings.extend(heights.warnings(ran.is_ok()));
+        warnings.extend(normals.warnings(ran.is_ok()).into_iter().map(|text| format!("the normal map {text}")));
+        let ran = ran?;
+        let scale = self.options.scale.resolve(ran.size)?;
+        let baked = Baked { ran, height_type: heights.height_type(), scale };
+        warnings.extend(inexact_scale(&baked));
+        Ok(baked)
+    }
+
+    /// A sink for each output.
+    fn create(&self, size: Size) -> Result<Maps<RowsOut>> {
+        self.outputs.iter().try_for_each(|path| create_folder_of(path))?;
+        let Maps { normal, parallax } = &self.outputs;
+        let normal = normal.as_ref().zip(self.options.normal);
+        let parallax = parallax.as_ref().zip(self.options.parallax);
+        Ok(Maps {
+            normal: normal.map(|(path, format)| create_normals(path, size, format)).transpose()?,
+            parallax: parallax.map(|(path, format)| create_parallax(path, size, format)).transpose()?,
+        })
     }
 }
 
-impl Outcome {
-    fn unopened(error: Error) -> Self {
-        Self { result: Err(error), warnings: Vec::new(), time: None, bytes_in: 0, bytes_out: 0 }
-    }
+/// Makes the folders above a file.
+pub(super) fn create_folder_of(file: &Path) -> Result<()> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    std::fs::create_dir_all(folder).map_err(Error::io(folder))
 }
 
 /// Says so if the scale had to be rounded.
 fn inexact_scale(baked: &Baked) -> Option<String> {
     let scale = baked.scale;
     (!scale.exact).then(|| format!("the scale has too many digits: {scale}, the nearest one that fits, was used"))
-}
-
-/// A panic as an error of the file that caused it.
-fn fault(input: &Path, panic: &(dyn Any + Send)) -> Error {
-    let text = panic.downcast_ref::<String>().map(String::as_str);
-    let text = text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no message");
-    Error::file(input, format!("a fault in texbake: {text}"), "please report it with this file")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_panic_names_the_file_that_caused_it() {
-        let text = |panic: Box<dyn Any + Send>| fault(Path::new("wall_height.png"), panic.as_ref()).to_string();
-        let said = |message| format!("wall_height.png: a fault in texbake: {message}; please report it with this file");
-        assert_eq!(text(Box::new("index out of range")), said("index out of range"));
-        assert_eq!(text(Box::new(String::from("no row 3"))), said("no row 3"));
-        assert_eq!(text(Box::new(3)), said("no message"));
-    }
 }

@@ -1,17 +1,17 @@
-//! Many textures: which files are height maps, what their normal maps are called, how they are baked side by side,
-//! and what is reported about them.
+//! Many textures: which files are height maps, what their maps are called, how they are baked side by side, and what
+//! is reported about them. One pair of normal maps: how it is blended, and what is reported about it.
 //!
 //! ```no_run
 //! use std::sync::Arc;
-//! use texbake::batch::{Job, NameTemplate, Search, run};
-//! use texbake::{Baker, NormalOptions, io::ReadOptions, stream::Monitor};
+//! use texbake::batch::{Job, MapKind, NameTemplate, Search, run};
+//! use texbake::{BakeOptions, Baker, io::ReadOptions, stream::Monitor};
 //!
 //! let baker = Arc::new(Baker::auto());
 //! let (found, _unreadable_folders) = Search::default().find(&["textures".into()]);
 //! let jobs = found.iter().map(|map| {
-//!     let output = NameTemplate::default().output(map, "baked".as_ref(), "png")?;
-//!     let (read, options) = (ReadOptions::default(), NormalOptions::default());
-//!     Ok(Job { input: map.path.clone(), output, read, options, baker: baker.clone() })
+//!     let outputs = NameTemplate::default().outputs(map, &[MapKind::Normal], "baked".as_ref(), "png")?;
+//!     let (read, options) = (ReadOptions::default(), BakeOptions::default());
+//!     Ok(Job { input: map.path.clone(), outputs, normals: None, read, options, baker: baker.clone() })
 //! });
 //! let jobs: Vec<Job> = jobs.collect::<texbake::Result<_>>()?;
 //! for (job, outcome) in jobs.iter().zip(run(&jobs, 8, &Monitor::default(), &|_| ())) {
@@ -20,13 +20,23 @@
 //! # Ok::<(), texbake::Error>(())
 //! ```
 
+mod blend;
 mod discovery;
+mod heights;
 mod job;
 mod naming;
+mod normals;
+mod offsets;
+mod outcome;
 mod report;
 mod targets;
 
+pub use blend::{BlendJob, BlendOutcome, BlendReport, FormatReport, LayerFacts, LayerReport, MaskInput, UsedWeights};
 pub use discovery::{Found, Search};
-pub use job::{Event, Job, Outcome, run};
-pub use naming::{NameTemplate, OUTPUT_EXTENSIONS};
-pub use report::{FileReport, FileResult, Options, Report, ReportFile, Totals, UsedScale};
+pub use job::{Event, Job, run};
+pub use naming::{MapKind, NameTemplate, OUTPUT_EXTENSIONS};
+pub use normals::{Degenerate, NormalInput};
+pub use offsets::{Decoding, ParallaxNumbers, ParallaxSidecar, WelshNumbers, describe_codes};
+pub use outcome::Outcome;
+pub use report::{FileReport, FileResult, JsonFile, Options, Outputs, Report, RunReport, Totals, UsedScale};
+pub use targets::Files;

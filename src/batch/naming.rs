@@ -1,8 +1,9 @@
-//! What a normal map is called.
+//! What the maps of a height map are called.
 
 use super::Found;
+use crate::baker::Maps;
 use crate::error::{Error, Result};
-use crate::names::one_of;
+use crate::names::{named, one_of};
 use std::fmt;
 use std::path::{Component, Path, PathBuf};
 use std::str::FromStr;
@@ -10,13 +11,26 @@ use std::str::FromStr;
 /// Formats that a folder bake writes.
 pub const OUTPUT_EXTENSIONS: [&str; 3] = ["png", "tif", "exr"];
 
-/// The name of an output without its extension: text, `{stem}` for the input's name without its suffix, and `{size}`
-/// for the resolution after it (`_2k`, or nothing).
+/// A map that a height map is baked into.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum MapKind {
+    /// The normal map.
+    Normal,
+    /// The parallax map.
+    Parallax,
+}
+
+named! {
+    MapKind "maps" { Normal = "normal", Parallax = "parallax" }
+}
+
+/// The name of an output without its extension: text, `{stem}` for the input's name without its suffix, `{map}` for
+/// `normal` or `parallax`, and `{size}` for the resolution after the suffix (`_2k`, or nothing).
 ///
 /// ```
 /// use texbake::batch::NameTemplate;
 ///
-/// assert_eq!(NameTemplate::default().to_string(), "{stem}_normal{size}");
+/// assert_eq!(NameTemplate::default().to_string(), "{stem}_{map}{size}");
 /// assert!("maps/{stem}_n".parse::<NameTemplate>().is_ok());
 /// assert!("../{stem}".parse::<NameTemplate>().is_err());
 /// assert!("{name}_n".parse::<NameTemplate>().is_err());
@@ -25,12 +39,13 @@ pub const OUTPUT_EXTENSIONS: [&str; 3] = ["png", "tif", "exr"];
 pub struct NameTemplate(String);
 
 const STEM: &str = "{stem}";
+const MAP: &str = "{map}";
 const SIZE: &str = "{size}";
 
 impl Default for NameTemplate {
-    /// `{stem}_normal{size}`: `wall_height_2k.png` becomes `wall_normal_2k.png`.
+    /// `{stem}_{map}{size}`: `wall_height_2k.png` becomes `wall_normal_2k.png`.
     fn default() -> Self {
-        Self("{stem}_normal{size}".into())
+        Self("{stem}_{map}{size}".into())
     }
 }
 
@@ -38,12 +53,13 @@ impl FromStr for NameTemplate {
     type Err = Error;
 
     /// # Errors
-    /// [`Error::Parameter`] for other braces than `{stem}` and `{size}`, or a name that would leave the folder.
+    /// [`Error::Parameter`] for other braces than `{stem}`, `{map}` and `{size}`, or a name that would leave the folder.
     fn from_str(text: &str) -> Result<Self> {
-        let plain = text.replace(STEM, "").replace(SIZE, "");
+        let plain = [STEM, MAP, SIZE].iter().fold(text.to_owned(), |text, part| text.replace(part, ""));
         let stays = Path::new(text).components().all(|part| matches!(part, Component::Normal(_)));
         if plain.contains(['{', '}']) || !stays || text.is_empty() || text.ends_with(['/', '\\']) {
-            let range = "a file name without extension in which {stem} and {size} stand for parts of the input's name";
+            let range = "a file name without extension in which {stem} and {size} stand for parts of the input's name, \
+                         and {map} for normal or parallax";
             return Err(Error::parameter("name", text, range));
         }
         Ok(Self(text.into()))
@@ -57,49 +73,76 @@ impl fmt::Display for NameTemplate {
 }
 
 impl NameTemplate {
-    /// Where the normal map of `map` goes below the folder `out`; the input's folders are kept.
+    /// Where the `maps` of `found` go below the folder `out`; the input's folders are kept.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if `extension` is not one of [`OUTPUT_EXTENSIONS`].
-    pub fn output(&self, map: &Found, out: &Path, extension: &str) -> Result<PathBuf> {
+    /// [`Error::Parameter`] if `extension` is not one of [`OUTPUT_EXTENSIONS`], there is no map, or two maps would have
+    /// one name.
+    pub fn outputs(&self, found: &Found, maps: &[MapKind], out: &Path, extension: &str) -> Result<Maps<PathBuf>> {
         if !OUTPUT_EXTENSIONS.contains(&extension) {
             return Err(Error::parameter("format", extension, one_of(&OUTPUT_EXTENSIONS)));
         }
+        let output =
+            |kind| maps.contains(&kind).then(|| out.join(&found.folder).join(self.name(found, kind, extension)));
+        match (output(MapKind::Normal), output(MapKind::Parallax)) {
+            (None, None) => Err(Error::parameter("maps", "none", "normal, parallax or both")),
+            (Some(normal), Some(parallax)) if normal == parallax => {
+                let range = "a name with {map} in it, which keeps the normal map and the parallax map apart, \
+                             as {stem}_{map}{size}";
+                Err(Error::parameter("name", self, range))
+            }
+            (normal, parallax) => Ok(Maps { normal, parallax }),
+        }
+    }
+
+    fn name(&self, found: &Found, kind: MapKind, extension: &str) -> String {
+        let name = self.0.replace(SIZE, &found.size).replace(MAP, &kind.to_string());
         // A stem that is all suffix (`--suffix height`, `height.png`) leaves an underscore without its left side.
-        let name = self.0.replace(SIZE, &map.size);
-        let name = if map.stem.is_empty() { name.replace("{stem}_", "") } else { name };
-        let name = name.replace(STEM, &map.stem);
-        Ok(out.join(&map.folder).join(format!("{name}.{extension}")))
+        let name = if found.stem.is_empty() { name.replace("{stem}_", "") } else { name };
+        format!("{}.{extension}", name.replace(STEM, &found.stem))
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::MapKind::{Normal, Parallax};
     use super::*;
 
-    fn output(template: &str, stem: &str, size: &str) -> String {
+    fn outputs(template: &str, stem: &str, size: &str, maps: &[MapKind]) -> Result<Vec<String>> {
         let map = Found { path: "x".into(), folder: "brick/old".into(), stem: stem.into(), size: size.into() };
-        let path = template.parse::<NameTemplate>().unwrap().output(&map, Path::new("out"), "png").unwrap();
-        path.to_str().unwrap().replace('\\', "/")
+        let paths = template.parse::<NameTemplate>().unwrap().outputs(&map, maps, Path::new("out"), "png")?;
+        Ok(paths.iter().map(|path| path.to_str().unwrap().replace('\\', "/")).collect())
     }
 
     #[test]
     fn templates_put_the_parts_in_place() {
         for (template, stem, size, path) in [
-            ("{stem}_normal{size}", "wall", "_2k", "out/brick/old/wall_normal_2k.png"),
-            ("{stem}_normal{size}", "wall.v2", "", "out/brick/old/wall.v2_normal.png"),
-            ("{stem}_normal{size}", "", "_4k", "out/brick/old/normal_4k.png"),
+            ("{stem}_{map}{size}", "wall", "_2k", "out/brick/old/wall_normal_2k.png"),
+            ("{stem}_{map}{size}", "wall.v2", "", "out/brick/old/wall.v2_normal.png"),
+            ("{stem}_{map}{size}", "", "_4k", "out/brick/old/normal_4k.png"),
+            ("{map}/{stem}", "{map}", "", "out/brick/old/normal/{map}.png"),
             ("{stem}/n", "wall", "_2k", "out/brick/old/wall/n.png"),
             ("n", "wall", "", "out/brick/old/n.png"),
         ] {
-            assert_eq!(output(template, stem, size), path);
+            assert_eq!(outputs(template, stem, size, &[Normal]).unwrap(), [path]);
         }
+    }
+
+    #[test]
+    fn each_map_has_a_name_of_its_own() {
+        let both = ["out/brick/old/wall_normal_2k.png", "out/brick/old/wall_parallax_2k.png"];
+        assert_eq!(outputs("{stem}_{map}{size}", "wall", "_2k", &[Parallax, Normal]).unwrap(), both);
+        assert_eq!(outputs("{stem}_p", "wall", "", &[Parallax]).unwrap(), ["out/brick/old/wall_p.png"]);
+        let error = outputs("{stem}_n", "wall", "", &[Normal, Parallax]).unwrap_err().to_string();
+        assert!(error.starts_with("name is {stem}_n: it must be a name with {map} in it"), "{error}");
+        let error = outputs("{stem}_n", "wall", "", &[]).unwrap_err().to_string();
+        assert_eq!(error, "maps is none: it must be normal, parallax or both");
     }
 
     #[test]
     fn other_formats_are_refused() {
         let map = Found { path: "x".into(), folder: PathBuf::new(), stem: "x".into(), size: String::new() };
-        let error = NameTemplate::default().output(&map, Path::new("out"), "jpg").unwrap_err();
+        let error = NameTemplate::default().outputs(&map, &[Normal], Path::new("out"), "jpg").unwrap_err();
         assert_eq!(error.to_string(), "format is jpg: it must be png, tif or exr");
     }
 }

@@ -1,12 +1,15 @@
 //! What was done, for other programs: JSON.
 
-use super::{Job, Outcome, targets};
+use super::offsets::ParallaxNumbers;
+use super::targets::{self, Files};
+use super::{Job, MapKind, Outcome};
+use crate::baker::{Baker, Ran};
 use crate::error::{Error, Result};
-use crate::io::ReadOptions;
 use crate::io::replace::Replacement;
-use crate::ops::bake::NormalOptions;
+use crate::ops::bake::BakeOptions;
 use serde::{Serialize, Serializer};
 use std::io::Write;
+use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -54,7 +57,7 @@ pub struct Totals {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FileResult {
-    /// The normal map is complete.
+    /// Every map is complete.
     Baked,
     /// There is an error, and no output.
     Failed,
@@ -70,18 +73,42 @@ pub struct FileReport {
     /// The height map file.
     #[serde(serialize_with = "as_text")]
     pub input: PathBuf,
-    /// The normal map file.
-    #[serde(serialize_with = "as_text")]
-    pub output: PathBuf,
+    /// The normal map from which the normals came, where they are not the heights' own.
+    pub normals: Option<String>,
+    /// The files of the maps that were asked for.
+    pub outputs: Outputs,
+    /// What was asked for, by the names of the command line.
+    pub options: Options,
+    /// Type of the heights: `u8`, `u16`, `f32`.
+    pub depth: Option<String>,
+    /// The scale that was used, in texels.
+    pub scale: Option<UsedScale>,
+    /// What a shader needs to know of the parallax map, if there is one.
+    pub parallax: Option<ParallaxNumbers>,
+    /// How it went.
+    #[serde(flatten)]
+    pub run: RunReport,
+}
+
+/// The files of a height map's maps.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Outputs {
+    /// The normal map.
+    pub normal: Option<String>,
+    /// The parallax map.
+    pub parallax: Option<String>,
+}
+
+/// How the work on some files went.
+#[derive(Debug, Clone, Serialize)]
+pub struct RunReport {
     /// What became of it.
     pub result: FileResult,
     /// Why it failed.
     pub error: Option<String>,
-    /// What looks wrong, although it was baked.
+    /// What looks wrong, although it was done.
     pub warnings: Vec<String>,
-    /// What was asked for, by the names of the command line.
-    pub options: Options,
-    /// What baked it: `cpu` or `gpu`.
+    /// What ran it: `cpu` or `gpu`.
     pub backend: Option<&'static str>,
     /// The device and how it was used.
     pub adapter: Option<String>,
@@ -93,15 +120,11 @@ pub struct FileReport {
     pub width: Option<usize>,
     /// Rows.
     pub height: Option<usize>,
-    /// Type of the heights: `u8`, `u16`, `f32`.
-    pub depth: Option<String>,
-    /// The scale that was used, in texels.
-    pub scale: Option<UsedScale>,
-    /// From opening the input to closing the output; null if the input was never opened.
+    /// From opening the inputs to closing the outputs; null if the inputs were never opened.
     pub milliseconds: Option<f64>,
-    /// Bytes of the input.
+    /// Bytes of the inputs.
     pub bytes_in: u64,
-    /// Bytes of the output.
+    /// Bytes of the outputs.
     pub bytes_out: u64,
 }
 
@@ -114,14 +137,22 @@ pub struct Options {
     pub filter: String,
     /// The edge mode, or those of x and y.
     pub edge: String,
-    /// How a component becomes a code.
-    pub encoding: String,
-    /// How a code is stored.
-    pub bits: String,
-    /// Which components there are.
-    pub channels: String,
+    /// The maps that were asked for: `normal,parallax`.
+    pub maps: String,
+    /// How a component of the normal map becomes a code.
+    pub encoding: Option<String>,
+    /// How a code of the normal map is stored.
+    pub bits: Option<String>,
+    /// Which components the normal map has.
+    pub channels: Option<String>,
     /// Which way green points.
-    pub convention: String,
+    pub convention: Option<String>,
+    /// How a value of the parallax map becomes a code.
+    pub parallax_encoding: Option<String>,
+    /// How a code of the parallax map is stored.
+    pub parallax_bits: Option<String>,
+    /// Steps towards the eye that the numbers of a parallax map are for.
+    pub iterations: Option<u32>,
     /// Exact or fast.
     pub precision: String,
     /// The channel that was read.
@@ -146,42 +177,51 @@ pub struct UsedScale {
 }
 
 impl Report {
-    /// What `jobs` came to in `time`; `errors` are those of the search.
-    pub fn new(jobs: &[Job], outcomes: &[Outcome], time: Duration, errors: &[Error], settings: Option<&Path>) -> Self {
+    /// What `jobs` came to in `time`; `errors` are those of the search, and the numbers of parallax maps are for
+    /// `iterations` steps.
+    pub fn new(
+        jobs: &[Job],
+        outcomes: &[Outcome],
+        time: Duration,
+        errors: &[Error],
+        settings: Option<&Path>,
+        iterations: NonZeroU32,
+    ) -> Self {
+        let file = |(job, outcome): (&Job, &Outcome)| FileReport::new(job, outcome, iterations);
         Self {
             version: env!("CARGO_PKG_VERSION"),
             settings: settings.map(|path| path.display().to_string()),
             totals: Totals::new(outcomes, time),
             errors: errors.iter().map(ToString::to_string).collect(),
-            files: jobs.iter().zip(outcomes).map(|(job, outcome)| FileReport::new(job, outcome)).collect(),
+            files: jobs.iter().zip(outcomes).map(file).collect(),
         }
     }
 }
 
-/// The file that a report goes into. It is opened before the run, since a long one shall not end without its report.
-pub struct ReportFile {
+/// A JSON file about jobs. It is opened before the run, since a long one shall not end without its report.
+pub struct JsonFile {
     path: PathBuf,
     file: Replacement,
 }
 
-impl ReportFile {
-    /// Opens the file for a report about `jobs`; its folders are created, and it appears under its name when it is
-    /// complete.
+impl JsonFile {
+    /// Opens a file about `jobs`, `what` in words: the report, say. Its folders are created, and it appears under its
+    /// name when it is complete.
     ///
     /// # Errors
     /// [`Error::File`] if it is the input or output of a job or the settings file, or cannot be replaced; [`Error::Io`].
-    pub fn create(path: &Path, jobs: &[Job], settings: Option<&Path>) -> Result<Self> {
-        targets::check_report(path, jobs, settings)?;
+    pub fn create(what: &str, path: &Path, jobs: &[Files<'_>], settings: Option<&Path>) -> Result<Self> {
+        targets::check_report(what, path, jobs, settings)?;
         std::fs::create_dir_all(path.parent().unwrap_or(Path::new(""))).map_err(Error::io(path))?;
         Ok(Self { path: path.into(), file: Replacement::create(path)? })
     }
 
-    /// Writes the report as JSON.
+    /// Writes `content` and closes the file.
     ///
     /// # Errors
     /// [`Error::Io`] if the file cannot be written.
-    pub fn write(self, report: &Report) -> Result<()> {
-        let mut json = serde_json::to_vec_pretty(report).map_err(|error| Error::io(&self.path)(error.into()))?;
+    pub fn write(self, content: &impl Serialize) -> Result<()> {
+        let mut json = serde_json::to_vec_pretty(content).map_err(|error| Error::io(&self.path)(error.into()))?;
         json.push(b'\n');
         self.file.output()?.write_all(&json).map_err(Error::io(&self.path))?;
         self.file.commit()
@@ -212,7 +252,7 @@ impl Totals {
 
 impl FileResult {
     /// What `outcome` amounts to.
-    pub fn of(outcome: &Outcome) -> Self {
+    pub fn of<T>(outcome: &Outcome<T>) -> Self {
         match &outcome.result {
             Ok(_) => Self::Baked,
             Err(Error::Cancelled) if outcome.time.is_none() => Self::NotBegun,
@@ -222,29 +262,19 @@ impl FileResult {
     }
 }
 
-impl FileReport {
-    fn new(job: &Job, outcome: &Outcome) -> Self {
-        let result = FileResult::of(outcome);
-        let baked = outcome.result.as_ref().ok();
-        let ran = baked.map(|baked| &baked.ran);
-        let ratio =
-            |part: i32, q: u32| crate::Rational::new(part.into(), q.into()).map_or(String::new(), |r| r.to_string());
-        let scale = baked.map(|baked| baked.scale);
+impl RunReport {
+    /// What `outcome` says; `ran` is there if it went well.
+    pub(super) fn new<T>(outcome: &Outcome<T>, ran: Option<&Ran>, baker: &Baker, failure: Option<String>) -> Self {
         Self {
-            input: job.input.clone(),
-            output: job.output.clone(),
-            result,
-            error: job.failure(outcome),
+            result: FileResult::of(outcome),
+            error: failure,
             warnings: outcome.warnings.clone(),
-            options: Options::new(&job.options, &job.read),
             backend: ran.map(|ran| ran.backend),
             adapter: ran.map(|ran| ran.device.clone()),
-            reason: job.baker.reason().to_owned(),
+            reason: baker.reason().to_owned(),
             fallback: ran.and_then(|ran| ran.fallback.clone()),
             width: ran.map(|ran| ran.size.width()),
             height: ran.map(|ran| ran.size.height()),
-            depth: baked.map(|baked| baked.height_type.to_string()),
-            scale: scale.map(|s| UsedScale { x: ratio(s.x, s.q), y: ratio(s.y, s.q), exact: s.exact }),
             milliseconds: outcome.time.map(|time| (time.as_secs_f64() * 1e6).round() / 1e3),
             bytes_in: outcome.bytes_in,
             bytes_out: outcome.bytes_out,
@@ -252,18 +282,45 @@ impl FileReport {
     }
 }
 
-impl Options {
-    fn new(options: &NormalOptions, read: &ReadOptions) -> Self {
-        let format = options.format;
+impl FileReport {
+    fn new(job: &Job, outcome: &Outcome, iterations: NonZeroU32) -> Self {
+        let baked = outcome.result.as_ref().ok();
+        let ratio =
+            |part: i32, q: u32| crate::Rational::new(part.into(), q.into()).map_or(String::new(), |r| r.to_string());
+        let scale = baked.map(|baked| baked.scale);
+        let text = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
         Self {
-            scale: options.scale.to_string(),
-            filter: options.filter.to_string(),
-            edge: options.edges.to_string(),
-            encoding: format.encoding.to_string(),
-            bits: format.depth.to_string(),
-            channels: format.channels.to_string(),
-            convention: format.convention.to_string(),
-            precision: options.precision.to_string(),
+            input: job.input.clone(),
+            normals: job.normals.as_ref().map(|normals| normals.path.display().to_string()),
+            outputs: Outputs { normal: text(&job.outputs.normal), parallax: text(&job.outputs.parallax) },
+            options: Options::new(job, iterations),
+            depth: baked.map(|baked| baked.height_type.to_string()),
+            scale: scale.map(|s| UsedScale { x: ratio(s.x, s.q), y: ratio(s.y, s.q), exact: s.exact }),
+            parallax: ParallaxNumbers::of(job, outcome, iterations),
+            run: RunReport::new(outcome, baked.map(|baked| &baked.ran), &job.baker, job.failure(outcome)),
+        }
+    }
+}
+
+impl Options {
+    fn new(job: &Job, iterations: NonZeroU32) -> Self {
+        let BakeOptions { scale, filter, edges, normal, parallax, precision } = job.options;
+        let read = &job.read;
+        let maps = [normal.map(|_| MapKind::Normal), parallax.map(|_| MapKind::Parallax)];
+        let maps: Vec<String> = maps.into_iter().flatten().map(|kind| kind.to_string()).collect();
+        Self {
+            scale: scale.to_string(),
+            filter: filter.to_string(),
+            edge: edges.to_string(),
+            maps: maps.join(","),
+            encoding: normal.map(|format| format.encoding.to_string()),
+            bits: normal.map(|format| format.depth.to_string()),
+            channels: normal.map(|format| format.channels.to_string()),
+            convention: normal.map(|format| format.convention.to_string()),
+            parallax_encoding: parallax.map(|format| format.encoding.to_string()),
+            parallax_bits: parallax.map(|format| format.depth.to_string()),
+            iterations: parallax.map(|_| iterations.get()),
+            precision: precision.to_string(),
             channel: read.channel.as_ref().map(ToString::to_string),
             color_space: read.color_space.to_string(),
             raw: read.raw.map(|layout| layout.to_string()),
@@ -273,6 +330,6 @@ impl Options {
 }
 
 /// A path as text; names that are no Unicode are no reason to lose a report.
-fn as_text<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+pub(super) fn as_text<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(&path.display())
 }

@@ -1,55 +1,71 @@
 //! No output may overwrite an input, nor another output; nor may the report.
 
-use super::Job;
 use crate::error::{Error, Result};
 use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
 
-const REMEDY: &str = "choose another output";
-
-/// Why each job must not run, or `None`: its output is an input, or the output of another job too.
-///
-/// All jobs of a clash are refused, so that their order decides nothing.
-pub(super) fn refusals(jobs: &[Job]) -> Vec<Option<Error>> {
-    let inputs = inputs(jobs);
-    let places: Vec<PathBuf> = jobs.iter().map(|job| place(&job.output)).collect();
-    let mut of_place: HashMap<&Path, Vec<&Job>> = HashMap::new();
-    for (job, place) in jobs.iter().zip(&places) {
-        of_place.entry(place).or_default().push(job);
-    }
-    let refusal = |(job, place): (&Job, &PathBuf)| {
-        if let Some(input) = identity(place).and_then(|output| inputs.get(&output)) {
-            let reason = format!("the output of {} would overwrite this input", job.input.display());
-            return Some(Error::file(*input, reason, REMEDY));
-        }
-        let other = of_place[place.as_path()].iter().find(|other| !std::ptr::eq(**other, job))?;
-        let reason = format!("both {} and {} would be baked into it", job.input.display(), other.input.display());
-        Some(Error::file(&job.output, reason, "bake them into different folders, or change --name"))
-    };
-    jobs.iter().zip(&places).map(refusal).collect()
+/// The files that a job reads and writes.
+#[derive(Debug, Clone)]
+pub struct Files<'a> {
+    /// What it reads; the first one gives it its name.
+    pub inputs: Vec<&'a Path>,
+    /// What it writes.
+    pub outputs: Vec<&'a Path>,
 }
 
-/// Fails if the report would overwrite an input, an output or the settings.
-pub(super) fn check_report(report: &Path, jobs: &[Job], settings: Option<&Path>) -> Result<()> {
-    let refused = |what: &str, file: &Path| {
-        let reason = format!("the report would overwrite the {what} {}", file.display());
-        Err(Error::file(report, reason, "choose another name for the report"))
+const REMEDY: &str = "choose another output";
+
+/// Why each job must not run, or `None`: an output of it is an input, or another output too.
+///
+/// All jobs of a clash are refused, so that their order decides nothing.
+pub(super) fn refusals(jobs: &[Files<'_>]) -> Vec<Option<Error>> {
+    let inputs = inputs(jobs);
+    let places: Vec<Vec<PathBuf>> =
+        jobs.iter().map(|job| job.outputs.iter().map(|path| place(path)).collect()).collect();
+    let mut of_place: HashMap<&Path, Vec<&Files>> = HashMap::new();
+    for (job, places) in jobs.iter().zip(&places) {
+        places.iter().for_each(|place| of_place.entry(place).or_default().push(job));
+    }
+    let refusal = |job: &Files, output: &Path, place: &PathBuf| {
+        let name = job.inputs[0].display();
+        if let Some(input) = identity(place).and_then(|output| inputs.get(&output)) {
+            return Some(Error::file(*input, format!("the output of {name} would overwrite this input"), REMEDY));
+        }
+        let there = &of_place[place.as_path()];
+        if let Some(other) = there.iter().find(|other| !std::ptr::eq(**other, job)) {
+            let reason = format!("both {name} and {} would be baked into it", other.inputs[0].display());
+            return Some(Error::file(output, reason, "bake them into different folders, or change --name"));
+        }
+        let is_alone = there.len() == 1;
+        (!is_alone).then(|| Error::file(output, format!("it would take two maps of {name}"), REMEDY))
     };
-    let place_of_report = place(report);
+    let first = |(job, places): (&Files, &Vec<PathBuf>)| {
+        job.outputs.iter().zip(places).find_map(|(output, place)| refusal(job, output, place))
+    };
+    jobs.iter().zip(&places).map(first).collect()
+}
+
+/// Fails if a file about `jobs`, `what` in words, would overwrite an input, an output or the settings.
+pub(super) fn check_report(what: &str, path: &Path, jobs: &[Files<'_>], settings: Option<&Path>) -> Result<()> {
+    let refused = |kind: &str, file: &Path| {
+        let reason = format!("the {what} would overwrite the {kind} {}", file.display());
+        Err(Error::file(path, reason, format!("choose another name for the {what}")))
+    };
+    let place_of_report = place(path);
     if let Some(input) = identity(&place_of_report).and_then(|report| inputs(jobs).remove(&report)) {
         return refused("input", input);
     }
     if let Some(settings) = settings.filter(|settings| place(settings) == place_of_report) {
         return refused("settings file", settings);
     }
-    match jobs.iter().find(|job| place(&job.output) == place_of_report) {
-        Some(job) => refused("output", &job.output),
+    match jobs.iter().flat_map(|job| &job.outputs).find(|output| place(output) == place_of_report) {
+        Some(output) => refused("output", output),
         None => Ok(()),
     }
 }
 
-fn inputs(jobs: &[Job]) -> HashMap<Identity, &Path> {
-    jobs.iter().filter_map(|job| Some((identity(&job.input)?, job.input.as_path()))).collect()
+fn inputs<'a>(jobs: &[Files<'a>]) -> HashMap<Identity, &'a Path> {
+    jobs.iter().flat_map(|job| &job.inputs).filter_map(|input| Some((identity(input)?, *input))).collect()
 }
 
 /// Where a file is written: links are resolved as far as there is something, the rest is as the file system compares

@@ -6,16 +6,17 @@ use super::exit::{Exit, Failure};
 use super::interruptible;
 use super::print::{file_table, put, say, summary};
 use super::progress::{Progress, Verbosity};
-use super::settings::{Backend, open_baker};
+use super::settings::{CodeChoice, Place, open_baker};
+use super::values::USUAL_ITERATIONS;
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::available_parallelism;
 use std::time::Instant;
-use texbake::batch::{Found, Job, Report, ReportFile, Search, run};
+use texbake::batch::{Found, Job, JsonFile, MapKind, Report, Search, run};
 use texbake::io::ReadOptions;
-use texbake::{Error, NormalOptions};
+use texbake::{BakeOptions, Error, Maps, ParallaxFormat};
 
 pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     let reporting = &arguments.reporting;
@@ -31,16 +32,19 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     }
     let jobs = jobs(arguments, config.as_ref(), &found)?;
     let settings = config.as_ref().map(|config| config.path.as_path());
-    let report_file = reporting.report.as_deref().map(|path| ReportFile::create(path, &jobs, settings)).transpose()?;
+    let files = Job::all_files(&jobs);
+    let report_file = reporting.report.as_deref().map(|path| JsonFile::create("report", path, &files, settings));
+    let report_file = report_file.transpose()?;
 
     let monitor = interruptible();
     let at_once = arguments.jobs.map_or_else(usual_jobs, NonZeroUsize::get);
-    let progress = Progress::new(&jobs, &monitor, if reporting.quiet { Verbosity::Quiet } else { Verbosity::Files });
+    let inputs: Vec<&Path> = jobs.iter().map(|job| job.input.as_path()).collect();
+    let progress = Progress::new(&inputs, &monitor, Verbosity::of(reporting, Verbosity::Files));
     let start = Instant::now();
-    let outcomes = progress.during(|| run(&jobs, at_once, &monitor, &|event| progress.watch(event)));
+    let outcomes = progress.during(|| run(&jobs, at_once, &monitor, &|event| progress.watch(&jobs, event)));
     let time = start.elapsed();
 
-    let report = Report::new(&jobs, &outcomes, time, &errors, settings);
+    let report = Report::new(&jobs, &outcomes, time, &errors, settings, USUAL_ITERATIONS);
     if !reporting.quiet {
         put(file_table(&jobs, &outcomes));
         put(summary(&report.totals, &jobs, &outcomes));
@@ -81,19 +85,32 @@ fn blame(error: Error, config: Option<&Config>) -> Failure {
 
 /// What the settings of one file say.
 struct Chosen {
-    output: PathBuf,
-    device: (Backend, Option<String>),
-    options: NormalOptions,
+    outputs: Maps<PathBuf>,
+    place: Place,
+    options: BakeOptions,
     read: ReadOptions,
 }
 
 impl Chosen {
-    fn new(settings: PerFile, map: &Found, out: &Path) -> texbake::Result<Self> {
-        let PerFile { name, format, settings } = settings;
-        let output = name.unwrap_or_default().output(map, out, format.as_deref().unwrap_or("png"))?;
-        let (device, options) = (settings.device()?, settings.normal(&output)?);
-        Ok(Self { output, device, options, read: settings.read() })
+    fn new(each: &PerFile, map: &Found, out: &Path) -> texbake::Result<Self> {
+        let settings = &each.settings;
+        let maps = each.maps.as_deref().unwrap_or(&[MapKind::Normal]);
+        let (name, format) = (each.name.clone().unwrap_or_default(), each.format.as_deref().unwrap_or("png"));
+        let outputs = name.outputs(map, maps, out, format)?;
+        let place = settings.device.place()?;
+        let normal = outputs.normal.as_ref().map(|path| settings.normal.format(path)).transpose()?;
+        let parallax = outputs.parallax.as_ref().map(|path| parallax(each.parallax(), path)).transpose()?;
+        let options = settings.slope.bake(normal, parallax)?;
+        Ok(Self { outputs, place, options, read: settings.input.read() })
     }
+}
+
+/// The format of a parallax map; here its options have longer names.
+fn parallax(codes: CodeChoice, output: &Path) -> texbake::Result<ParallaxFormat> {
+    codes.parallax(output).map_err(|error| match error {
+        Error::Parameter { value, range, .. } => Error::Parameter { parameter: "parallax-bits", value, range },
+        error => error,
+    })
 }
 
 /// One job for each file, with its own settings; files that run at the same place share a baker.
@@ -103,19 +120,24 @@ fn jobs(arguments: &BakeArguments, config: Option<&Config>, found: &[Found]) -> 
     for map in found {
         let below = config.map_or_else(PerFile::default, |config| config.settings(&relative(map)));
         let choose = |settings| Chosen::new(settings, map, &arguments.out);
-        let Chosen { output, device, options, read } = choose(arguments.each.clone().or(&below)).map_err(|error| {
+        let Chosen { outputs, place, options, read } = choose(&arguments.each.clone().or(&below)).map_err(|error| {
             // Where the command line alone would do, the mistake is in the file.
-            blame(error, config.filter(|_| choose(arguments.each.clone()).is_ok()))
+            blame(error, config.filter(|_| choose(&arguments.each).is_ok()))
         })?;
-        let baker = match bakers.get(&device) {
+        let baker = match bakers.get(&place) {
             Some(baker) => Arc::clone(baker),
             None => {
-                let baker = Arc::new(open_baker(&device)?);
-                bakers.insert(device, baker.clone());
+                let baker = Arc::new(open_baker(&place)?);
+                bakers.insert(place, baker.clone());
                 baker
             }
         };
-        jobs.push(Job { input: map.path.clone(), output, read, options, baker });
+        jobs.push(Job { input: map.path.clone(), outputs, normals: None, read, options, baker });
+    }
+    let asks_for_parallax = arguments.each.parallax() != CodeChoice::default();
+    if asks_for_parallax && jobs.iter().all(|job| job.outputs.parallax.is_none()) {
+        let reason = "--parallax-encoding and --parallax-bits are for parallax maps: ask for them with --maps";
+        return Err(Failure::Usage(reason.into()));
     }
     Ok(jobs)
 }

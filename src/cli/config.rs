@@ -133,7 +133,7 @@ impl Source<'_> {
         self.parsed(&arguments, start)
     }
 
-    /// `--scale=7/3` for `scale = "7/3"`.
+    /// `--scale=7/3` for `scale = "7/3"`, `--maps=normal,parallax` for `maps = ["normal", "parallax"]`.
     fn argument(&self, key: &Spanned<std::borrow::Cow<'_, str>>, value: &Spanned<DeValue<'_>>) -> Result<String> {
         let command = parser();
         let mut options = command.get_arguments().filter_map(|option| option.get_long());
@@ -143,15 +143,15 @@ impl Source<'_> {
             let remedy = format!("the settings are {}", known.join(", "));
             return Err(self.error(key.span().start, format!("{name} is no setting"), remedy));
         }
-        let text = match value.get_ref() {
-            DeValue::String(text) => text.to_string(),
-            DeValue::Integer(number) => number.to_string(),
-            DeValue::Float(number) => number.as_str().to_owned(),
-            _ => {
-                let remedy = format!("write it as on the command line, {name} = \"...\"");
-                return Err(self.error(value.span().start, format!("{name} is neither text nor a number"), remedy));
-            }
+        let texts: Option<Vec<String>> = match value.get_ref() {
+            DeValue::Array(values) => values.iter().map(plain_text).collect(),
+            _ => plain_text(value).map(|text| vec![text]),
         };
+        let text = texts.filter(|texts| !texts.is_empty()).map(|texts| texts.join(","));
+        let text = text.ok_or_else(|| {
+            let remedy = format!("write it as on the command line, {name} = \"...\"");
+            self.error(value.span().start, format!("{name} is neither text nor a number, nor a list of them"), remedy)
+        })?;
         Ok(format!("--{name}={text}"))
     }
 
@@ -180,6 +180,16 @@ impl Source<'_> {
     }
 }
 
+/// A value as it is written on the command line; `None` if it cannot be.
+fn plain_text(value: &Spanned<DeValue<'_>>) -> Option<String> {
+    match value.get_ref() {
+        DeValue::String(text) => Some(text.to_string()),
+        DeValue::Integer(number) => Some(number.to_string()),
+        DeValue::Float(number) => Some(number.as_str().to_owned()),
+        _ => None,
+    }
+}
+
 /// The options of one file, without anything else.
 fn parser() -> Command {
     let command = Command::new(NAME).no_binary_name(true).disable_help_flag(true).disable_version_flag(true);
@@ -204,9 +214,10 @@ mod tests {
         let config = config.unwrap();
         let settings = |path: &str| {
             let settings = config.settings(Path::new(path)).settings;
+            let (slope, normal) = (settings.slope, settings.normal);
             let text = |value: Option<String>| value.unwrap_or_default();
-            let (scale, filter) = (settings.scale.map(|it| it.to_string()), settings.filter.map(|it| it.to_string()));
-            (text(scale), text(filter), text(settings.bits.map(|it| it.to_string())))
+            let (scale, filter) = (slope.scale.map(|it| it.to_string()), slope.filter.map(|it| it.to_string()));
+            (text(scale), text(filter), text(normal.bits.map(|it| it.to_string())))
         };
         let expected = |scale: &str, bits: &str| (scale.to_owned(), "sobel".to_owned(), bits.to_owned());
         assert_eq!(settings("wall.png"), expected("24", ""));
@@ -221,15 +232,29 @@ mod tests {
     }
 
     #[test]
+    fn maps_are_text_or_a_list() {
+        use texbake::batch::MapKind::{Normal, Parallax};
+        let config = "[defaults]\nmaps = 'parallax,normal'\n[[override]]\nglob = 'a'\nmaps = ['normal', 'parallax']\n\
+                      [[override]]\nglob = 'b'\nmaps = ['parallax']\n";
+        let config = parse(config).unwrap();
+        for (name, maps) in [("a", vec![Normal, Parallax]), ("b", vec![Parallax]), ("c", vec![Parallax, Normal])] {
+            assert_eq!(config.settings(Path::new(name)).maps, Some(maps), "{name}");
+        }
+    }
+
+    #[test]
     fn mistakes_are_named_with_their_line() {
         for (text, parts) in [
-            ("[defaults]\nscal = 24\n", ["texbake.toml:2:", "scal is no setting", "scale, size, depth"]),
+            ("[defaults]\nscal = 24\n", ["texbake.toml:2:", "scal is no setting", "maps, name, format"]),
             ("[defaults]\n\nscale = 'x'\n", ["texbake.toml:3:", "'x' for '--scale", "it must be an integer"]),
             ("[defaults]\nfilter = 'sobl'\n", ["texbake.toml:2:", "'sobl' for '--filter", "sobel, scharr"]),
             (
                 "[defaults]\nscale = true\n",
                 ["texbake.toml:2:", "scale is neither text nor a number", "as on the command line"],
             ),
+            ("[defaults]\nmaps = []\n", ["texbake.toml:2:", "maps is neither text", "maps = \"...\""]),
+            ("[defaults]\nmaps = [true]\n", ["texbake.toml:2:", "maps is neither text", "maps = \"...\""]),
+            ("[defaults]\nmaps = ['normal', 'bump']\n", ["texbake.toml:2:", "'bump' for '--maps", "normal, parallax"]),
             ("scale = 24\n", ["texbake.toml:1:", "scale has no meaning here", "[defaults] and [[override]]"]),
             ("\n[[override]]\nscale = 24\n", ["texbake.toml:2:", "no glob", "glob = \"**/dem_*\""]),
             ("[[override]]\nglob = '[a'\n", ["texbake.toml:2:", "[a", "correct the glob"]),

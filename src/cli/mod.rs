@@ -2,13 +2,18 @@
 
 mod args;
 mod bake;
+mod blend;
+mod check;
 mod config;
 mod devices;
+mod diff;
 mod exit;
 mod normal;
+mod parallax;
 mod print;
 mod progress;
 mod settings;
+mod single;
 mod values;
 
 use args::{Arguments, Command};
@@ -23,7 +28,11 @@ pub fn run() -> ExitCode {
     let arguments = Arguments::parse();
     let done = match &arguments.command {
         Command::Normal(arguments) => normal::normal(arguments),
+        Command::Parallax(arguments) => parallax::parallax(arguments),
         Command::Bake(arguments) => bake::bake(arguments),
+        Command::Blend(arguments) => blend::blend(arguments),
+        Command::Check(arguments) => check::check(arguments),
+        Command::Diff(arguments) => diff::diff(arguments),
         Command::Devices(arguments) => devices::devices(arguments),
     };
     let exit = done.unwrap_or_else(|failure| {

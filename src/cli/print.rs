@@ -3,8 +3,8 @@
 use comfy_table::{CellAlignment, Table, presets};
 use std::cmp::Reverse;
 use std::io::Write;
-use texbake::batch::{FileResult, Job, Outcome, Totals};
-use texbake::{Baked, Device, HeightType, Scale};
+use texbake::batch::{BlendJob, BlendOutcome, FileResult, Job, Outcome, ParallaxNumbers, Totals, describe_codes};
+use texbake::{Baked, Baker, Device, HeightType, NormalFormat, Ran, Scale};
 
 /// Longer folders get a table of what was not baked, and of the slowest.
 const TABLE_ROWS: usize = 40;
@@ -21,46 +21,98 @@ pub fn put(text: impl std::fmt::Display) {
 }
 
 /// What became of one file of a folder.
-pub fn file_line(place: &str, job: &Job, outcome: &Outcome) -> String {
+pub fn file_line(job: &Job, outcome: &Outcome) -> String {
     match (&outcome.result, job.failure(outcome)) {
         (Ok(baked), _) => format!(
-            "[{place}] baked {} -> {}, {}, {}, {}",
+            "baked {} -> {}, {}, {}, {}",
             job.input.display(),
-            job.output.display(),
+            outputs(job),
             baked.ran.size,
             baked.height_type,
             milliseconds(outcome)
         ),
-        (Err(_), Some(reason)) => format!("[{place}] failed {reason}"),
-        (Err(error), None) => format!("[{place}] stopped {}: {error}", job.input.display()),
+        (Err(_), Some(reason)) => format!("failed {reason}"),
+        (Err(error), None) => format!("stopped {}: {error}", job.input.display()),
     }
 }
 
 /// What was baked, where and why there, and how fast.
 pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
     let baked = outcome.result.as_ref().ok()?;
-    let (options, format) = (&job.options, job.options.format);
+    let options = &job.options;
+    let normal = options.normal.map(describe_normals);
+    let parallax = options.parallax.map(|format| format!("parallax {}", describe_codes(format)));
+    let formats: Vec<String> = normal.into_iter().chain(parallax).collect();
     // Codes from 0 to white over one texel; floats have a height of their own.
     let nearly_flat = options.scale == Scale::default() && baked.height_type != HeightType::F32;
-    let rate = baked.ran.size.texels() as f64 / 1e6 / outcome.time.unwrap_or_default().as_secs_f64().max(1e-9);
     Some(format!(
-        "{}: {}, {} to {} {} {} {}, scale {}{}, {}; {} ({}); {}, {rate:.1} Mtexel/s, {} in, {} out",
-        job.output.display(),
+        "{}: {}, {} to {}{}, scale {}{}, {}; {}",
+        outputs(job),
         baked.ran.size,
         baked.height_type,
-        format.encoding,
-        format.depth,
-        format.channels,
-        format.convention,
+        formats.join(" and "),
+        job.normals.iter().map(|normals| format!(" with {}", normals.path.display())).collect::<String>(),
         baked.scale,
         if nearly_flat { " (nearly flat: see --scale)" } else { "" },
         options.precision,
-        baked.ran.name(),
-        job.baker.reason(),
+        how_it_ran(&baked.ran, &job.baker, outcome),
+    ))
+}
+
+/// What a shader computes with.
+pub fn parallax_line(numbers: &ParallaxNumbers) -> String {
+    let pair = |[x, y]: [f64; 2]| format!("({x}, {y})");
+    format!(
+        "in a shader: u = {} for {} iterations; with the height map itself, scale {} and bias {}",
+        pair(numbers.u),
+        numbers.iterations,
+        pair(numbers.welsh.scale),
+        pair(numbers.welsh.bias),
+    )
+}
+
+/// What was blended, where and why there, and how fast.
+pub fn blend_line(job: &BlendJob, method: &str, blended: &BlendOutcome) -> Option<String> {
+    let done = blended.outcome.result.as_ref().ok()?;
+    let inputs = [&job.base, &job.detail].into_iter().zip(&blended.inputs);
+    let inputs = inputs.map(|(input, facts)| {
+        format!("{} ({})", input.path.display(), facts.format.map(describe_normals).unwrap_or_default())
+    });
+    let mask = job.mask.iter().map(|mask| format!(" by {}", mask.path.display())).collect::<String>();
+    let weights = done.weights.filter(|_| method != "add").map(|weights| format!(" {weights}")).unwrap_or_default();
+    Some(format!(
+        "{}: {}, {method}{weights} of {}{mask} to {}, {}; {}",
+        job.output.display(),
+        done.ran.size,
+        inputs.collect::<Vec<_>>().join(" and "),
+        describe_normals(job.options.format),
+        job.options.precision,
+        how_it_ran(&done.ran, &job.baker, &blended.outcome),
+    ))
+}
+
+/// `unorm 8 xyz gl`.
+fn describe_normals(format: NormalFormat) -> String {
+    let NormalFormat { encoding, depth, channels, convention } = format;
+    format!("{encoding} {depth} {channels} {convention}")
+}
+
+/// The files of a job's maps.
+fn outputs(job: &Job) -> String {
+    job.outputs.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
+}
+
+/// Where and why there, how fast, and how many bytes.
+fn how_it_ran<T>(ran: &Ran, baker: &Baker, outcome: &Outcome<T>) -> String {
+    let rate = ran.size.texels() as f64 / 1e6 / outcome.time.unwrap_or_default().as_secs_f64().max(1e-9);
+    format!(
+        "{} ({}); {}, {rate:.1} Mtexel/s, {} in, {} out",
+        ran.name(),
+        baker.reason(),
         milliseconds(outcome),
         bytes(outcome.bytes_in),
         bytes(outcome.bytes_out),
-    ))
+    )
 }
 
 /// The files of a folder; of many only those that were not baked, and the slowest.
@@ -80,7 +132,7 @@ pub fn file_table(jobs: &[Job], outcomes: &[Outcome]) -> String {
 }
 
 fn rows_of<'a>(files: impl Iterator<Item = (&'a Job, &'a Outcome)>) -> String {
-    let mut table = plain_table(&["file", "size", "depth", "ms", "result"], &[3]);
+    let mut table = plain_table(&["file", "size", "depth", "maps", "ms", "result"], &[4]);
     for (job, outcome) in files {
         let (size, depth) = match &outcome.result {
             Ok(baked) => (baked.ran.size.to_string(), baked.height_type.to_string()),
@@ -93,7 +145,9 @@ fn rows_of<'a>(files: impl Iterator<Item = (&'a Job, &'a Outcome)>) -> String {
             FileResult::Stopped => "stopped".to_owned(),
             FileResult::NotBegun => "not begun".to_owned(),
         };
-        table.add_row([job.input.display().to_string(), size, depth, time, result]);
+        let maps = [job.outputs.normal.as_ref().map(|_| "normal"), job.outputs.parallax.as_ref().map(|_| "parallax")];
+        let maps = maps.into_iter().flatten().collect::<Vec<_>>().join(",");
+        table.add_row([job.input.display().to_string(), size, depth, maps, time, result]);
     }
     table.trim_fmt()
 }
@@ -155,7 +209,7 @@ fn plain_table(header: &[&str], numbers: &[usize]) -> Table {
     table
 }
 
-fn milliseconds(outcome: &Outcome) -> String {
+fn milliseconds<T>(outcome: &Outcome<T>) -> String {
     format!("{:.1} ms", outcome.time.unwrap_or_default().as_secs_f64() * 1e3)
 }
 

@@ -1,6 +1,8 @@
 //! Values of options that are no type of the library, and how values are read.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use std::fmt;
+use std::num::NonZeroU32;
 use std::str::FromStr;
 use texbake::{Error, Rational};
 
@@ -57,6 +59,35 @@ impl FromStr for ByteSize {
         bytes.ok_or_else(|| wrong("max-bytes", text, "a whole number of bytes above zero, as 512M or 4G"))
     }
 }
+
+/// The weights of two maps, `1,-0.5`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WeightPair(pub [Rational; 2]);
+
+impl FromStr for WeightPair {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let weight = |text: &str| text.trim().parse::<Rational>().ok();
+        let weights = text.split_once(',').and_then(|(base, detail)| Some([weight(base)?, weight(detail)?]));
+        weights.map(Self).ok_or_else(|| wrong("weights", text, "two numbers, as 1,-0.5 or 1/3,2/3"))
+    }
+}
+
+impl fmt::Display for WeightPair {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{}", self.0[0], self.0[1])
+    }
+}
+
+/// Steps of a shader through a parallax map.
+pub fn iterations(text: &str) -> Result<NonZeroU32, String> {
+    let steps = text.parse().ok().filter(|steps: &NonZeroU32| steps.get() <= 1000);
+    steps.ok_or_else(|| "it must be a whole number from 1 to 1000".into())
+}
+
+/// The steps of FGED2 listing 7.9.
+pub const USUAL_ITERATIONS: NonZeroU32 = NonZeroU32::new(4).unwrap();
 
 fn wrong(parameter: &'static str, value: &str, range: &str) -> Error {
     Error::Parameter { parameter, value: value.into(), range: range.into() }

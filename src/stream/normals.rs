@@ -46,6 +46,14 @@ pub fn read_normals(source: &mut dyn NormalSource) -> Result<NormalMap> {
     Ok(map)
 }
 
+impl NormalMap {
+    /// The rows of this map, from the top, for what reads a map row by row.
+    pub fn into_rows(self) -> Box<dyn NormalSource> {
+        let size = self.size();
+        Box::new(Tiled::new(self, size))
+    }
+}
+
 /// A normal map in memory, repeated from its first texel on, or cut, to fill another size.
 pub(crate) struct Tiled {
     map: NormalMap,

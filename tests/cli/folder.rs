@@ -31,7 +31,7 @@ fn a_tree_of_height_maps_becomes_a_tree_of_normal_maps() {
     let table: Vec<&str> = run.stdout.lines().collect();
     assert_eq!(table.len(), 9, "{}", run.stdout);
     let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
-    assert_eq!(words(table[0]), ["file", "size", "depth", "ms", "result"]);
+    assert_eq!(words(table[0]), ["file", "size", "depth", "maps", "ms", "result"]);
     let files: Vec<String> = table[1..8].iter().map(|row| words(row)[0].clone()).collect();
     assert_eq!(
         files,
@@ -45,7 +45,7 @@ fn a_tree_of_height_maps_becomes_a_tree_of_normal_maps() {
             "tex/wall_height_2k.png",
         ]
     );
-    assert_eq!(words(table[7])[1..5], ["40", "x", "22", "u16"]);
+    assert_eq!(words(table[7])[1..6], ["40", "x", "22", "u16", "normal"]);
     assert!(table[7].ends_with("baked"), "{}", table[7]);
     assert!(table[8].starts_with("7 of 7 files baked; 0.00 Mtexel in "), "{}", table[8]);
 }

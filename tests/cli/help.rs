@@ -6,7 +6,7 @@ use super::support::{Folder, bumps8};
 fn help_names_every_command_and_option() {
     let folder = Folder::new();
     let top = folder.run(&["--help"]).ends(0).stdout;
-    for word in ["normal", "bake", "devices", "Exit status", "texbake bake textures --out baked"] {
+    for word in ["normal", "parallax", "bake", "blend", "devices", "Exit status", "texbake bake textures --out baked"] {
         assert!(top.contains(word), "{word}");
     }
     let shared = [
@@ -40,12 +40,49 @@ fn help_names_every_command_and_option() {
     {
         assert!(bake.contains(option), "{option}");
     }
+    for option in ["--maps ", "--parallax-encoding ", "--parallax-bits ", "{map}"] {
+        assert!(bake.contains(option), "{option}");
+    }
     // A metre in a 16-bit elevation model is one of 65535 units.
     let words = normal.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words.contains("65535 for 16-bit elevation in metres"), "{normal}");
     assert!(folder.run(&["devices", "--help"]).ends(0).stdout.contains("--json"));
     let version = folder.run(&["--version"]).ends(0).stdout;
     assert_eq!(version.trim_end(), format!("texbake {}", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn what_help_shows_works() {
+    let folder = Folder::new();
+    folder.grey8("height.png", 8, 8, bumps8);
+    folder.grey8("mask.png", 8, 8, bumps8);
+    for name in ["normal.png", "a.png", "b.png", "base_normal.png", "detail_normal.png", "dx.tif"] {
+        folder.run(&["normal", "height.png", "-o", name, "--scale", "3", "-q"]).ends(0);
+    }
+    for (command, count) in [("parallax", 3), ("blend", 6)] {
+        let help = folder.run(&[command, "--help"]).ends(0).stdout;
+        let begin = format!("  texbake {command} ");
+        let examples: Vec<&str> = help.lines().filter(|line| line.starts_with(&begin)).collect();
+        assert_eq!(examples.len(), count, "{help}");
+        for example in examples {
+            // A remark may follow in brackets.
+            let arguments: Vec<&str> = example.split("   (").next().unwrap().split_whitespace().skip(1).collect();
+            assert_eq!(folder.run(&arguments).ends(0).stdout, "", "{example}");
+        }
+    }
+    assert!(folder.path("parallax.json").exists());
+}
+
+#[test]
+fn written_lines_of_help_are_not_broken() {
+    let folder = Folder::new();
+    for command in ["normal", "parallax", "bake", "blend"] {
+        // A line that is too long for the usual terminal goes on with few words at the border.
+        let help = folder.run(&[command, "--help"]).ends(0).stdout;
+        let (_, text) = help.split_once("--quiet").unwrap();
+        let is_broken = |(line, next): &(&str, &str)| line.len() > 80 && !next.is_empty() && next.len() < 15;
+        assert_eq!(text.lines().zip(text.lines().skip(1)).find(is_broken), None, "{command}");
+    }
 }
 
 #[test]

@@ -70,3 +70,62 @@ fn an_interrupted_file_leaves_nothing() {
     }
     panic!("no run was interrupted");
 }
+
+#[test]
+fn an_interrupted_blend_leaves_nothing() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("out")).unwrap();
+    for rows in [4096, 16384, 65535] {
+        sparse_tiff(&folder, "map.tif", 4096, rows);
+        let mut command = folder.command(&["blend", "map.tif", "map.tif", "-o", "out/n.tif", "--report", "r.json"]);
+        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        while folder.files("out").is_empty() {
+            std::thread::yield_now();
+        }
+        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        if output.status.code() == Some(0) {
+            std::fs::remove_file(folder.path("out/n.tif")).unwrap();
+            continue;
+        }
+        let run = Run::from(output).ends(130);
+        assert!(run.stderr.ends_with("out/n.tif was not written\n"), "{}", run.stderr);
+        assert_eq!(folder.files("out"), [""; 0]);
+        assert_eq!(folder.json("r.json")["result"], "stopped");
+        return;
+    }
+    panic!("no run was interrupted");
+}
+
+/// A plain RGB TIFF of 8 bits whose samples are a hole in the file: large, and made at once.
+fn sparse_tiff(folder: &Folder, name: &str, width: u32, height: u32) {
+    // One row to a strip; the strips' offsets and lengths follow the directory of ten entries.
+    let offsets = 8 + 2 + 10 * 12 + 4;
+    let (lengths, bits) = (offsets + 4 * height, offsets + 8 * height);
+    let samples = bits + 6;
+    let row = 3 * width;
+    let entries: [(u16, u16, u32, u32); 10] = [
+        (256, 4, 1, width),
+        (257, 4, 1, height),
+        (258, 3, 3, bits),
+        (259, 3, 1, 1), // no compression
+        (262, 3, 1, 2), // RGB
+        (273, 4, height, offsets),
+        (277, 3, 1, 3),
+        (278, 4, 1, 1),
+        (279, 4, height, lengths),
+        (284, 3, 1, 1), // samples side by side
+    ];
+    let mut bytes = [b"II*\0".as_slice(), &8u32.to_le_bytes(), &10u16.to_le_bytes()].concat();
+    for (tag, kind, count, value) in entries {
+        bytes.extend([tag, kind].iter().flat_map(|part| part.to_le_bytes()));
+        bytes.extend([count, value].iter().flat_map(|part| part.to_le_bytes()));
+    }
+    bytes.extend([0; 4]);
+    bytes.extend((0..height).flat_map(|strip| (samples + strip * row).to_le_bytes()));
+    bytes.extend((0..height).flat_map(|_| row.to_le_bytes()));
+    bytes.extend([8, 0, 8, 0, 8, 0]);
+    let path = folder.file(name, bytes);
+    let file = std::fs::File::options().write(true).open(path).unwrap();
+    file.set_len(u64::from(samples) + u64::from(row) * u64::from(height)).unwrap();
+}

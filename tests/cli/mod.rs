@@ -1,11 +1,16 @@
 //! The program itself, run in folders of its own.
 
+mod blend;
+mod check;
+mod diff;
 mod errors;
 mod folder;
 mod help;
 mod interrupt;
+mod maps;
 mod memory;
 mod normal;
+mod parallax;
 mod report;
 mod settings;
 mod support;

@@ -45,14 +45,16 @@ fn a_folder_is_reported_file_by_file() {
         assert!(take(file, "milliseconds").as_f64().unwrap() > 0.0);
     }
     let mut options = json!({
-        "scale": "1", "filter": "central", "edge": "wrap,clamp", "encoding": "unorm", "bits": "8", "channels": "xyz",
-        "convention": "gl", "precision": "exact", "channel": null, "color_space": "linear", "raw": null,
+        "scale": "1", "filter": "central", "edge": "wrap,clamp", "maps": "normal", "encoding": "unorm", "bits": "8",
+        "channels": "xyz", "convention": "gl", "parallax_encoding": null, "parallax_bits": null, "iterations": null,
+        "precision": "exact", "channel": null, "color_space": "linear", "raw": null,
         "max_bytes": 4_294_967_296u64,
     });
     assert_eq!(
         files[0],
         json!({
-            "input": "tex/a_height.png", "output": "out/a_normal.png", "result": "baked", "error": null,
+            "input": "tex/a_height.png", "normals": null, "parallax": null,
+            "outputs": { "normal": "out/a_normal.png", "parallax": null }, "result": "baked", "error": null,
             "warnings": [], "options": options, "backend": "cpu", "adapter": "reference, 1 thread",
             "reason": "asked for", "fallback": null, "width": 20, "height": 10, "depth": "u16",
             "scale": { "x": "1", "y": "1", "exact": true },
@@ -71,7 +73,7 @@ fn a_folder_is_reported_file_by_file() {
     assert_eq!(files[1]["options"], options);
     // 0.1 over 2 / 4 and over 1 / 4.
     assert_eq!(files[1]["scale"], json!({ "x": "1/5", "y": "2/5", "exact": true }));
-    assert_eq!(files[1]["output"], "out/b_normal_2k.png");
+    assert_eq!(files[1]["outputs"]["normal"], "out/b_normal_2k.png");
 }
 
 #[test]
@@ -82,7 +84,7 @@ fn one_file_is_reported_too() {
     let report = folder.json("r.json");
     assert_eq!((&report["settings"], &report["totals"]["baked"]), (&Value::Null, &json!(1)));
     let file = &report["files"][0];
-    assert_eq!((&file["input"], &file["output"]), (&json!("h.png"), &json!("n.png")));
+    assert_eq!((&file["input"], &file["outputs"]["normal"]), (&json!("h.png"), &json!("n.png")));
     assert_eq!(file["scale"], json!({ "x": "5419351/1725033", "y": "5419351/1725033", "exact": false }));
     assert!(file["warnings"][0].as_str().unwrap().contains("too many digits"));
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
-use texbake::{Baker, Codes, CodesRef, Grid, HeightMap, NormalOptions};
+use texbake::{Baker, Codes, CodesRef, Grid, HeightMap, NormalMap, NormalOptions, ParallaxOptions};
 
 /// A folder for one test, in which the program runs.
 pub struct Folder(TempDir);
@@ -153,6 +153,25 @@ pub fn read_png(path: &Path) -> (usize, usize, Codes) {
         _ => Codes::U8(bytes),
     };
     (info.width as usize, info.height as usize, codes)
+}
+
+/// An RGB PNG that holds the codes of a map of three components, written by the format's own crate.
+pub fn write_normals(folder: &Folder, name: &str, map: &NormalMap) {
+    let (depth, samples) = match map.codes() {
+        CodesRef::U8(codes) => (png::BitDepth::Eight, codes.to_vec()),
+        CodesRef::U16(codes) => (png::BitDepth::Sixteen, codes.iter().flat_map(|code| code.to_be_bytes()).collect()),
+        _ => unreachable!("a PNG holds integers"),
+    };
+    let size = map.size();
+    folder.file(name, png(size.width(), size.height(), png::ColorType::Rgb, depth, &samples));
+}
+
+/// Fails unless the PNG `name` holds the parallax map that the reference bakes from `map`.
+pub fn assert_parallax(folder: &Folder, name: &str, map: &HeightMap, options: &ParallaxOptions) {
+    let expected = Baker::reference().parallax(map, options).unwrap();
+    let (width, height, codes) = read_png(&folder.path(name));
+    assert_eq!((width, height), (map.size().width(), map.size().height()), "{name}");
+    assert!(codes.as_ref() == expected.codes(), "{name}: other codes than the reference's");
 }
 
 /// A bumpy 8-bit map.

@@ -1,0 +1,36 @@
+//! `texbake parallax`: one file.
+
+use super::args::ParallaxArguments;
+use super::exit::{Exit, Failure};
+use super::settings::{max_bytes, open_baker};
+use super::single::{ParallaxTelling, bake_one};
+use std::sync::Arc;
+use texbake::Maps;
+use texbake::batch::{Job, NormalInput};
+use texbake::io::NormalReadOptions;
+
+pub fn parallax(arguments: &ParallaxArguments) -> Result<Exit, Failure> {
+    let options = arguments.slope.bake(None, Some(arguments.codes().parallax(&arguments.output)?))?;
+    let job = Job {
+        input: arguments.input.clone(),
+        outputs: Maps { normal: None, parallax: Some(arguments.output.clone()) },
+        normals: given_normals(arguments),
+        read: arguments.heights.read(),
+        options,
+        baker: Arc::new(open_baker(&arguments.device.place()?)?),
+    };
+    let sidecar = arguments.json.then(|| arguments.output.with_extension("json"));
+    let telling = ParallaxTelling { iterations: arguments.iterations, sidecar: sidecar.as_deref() };
+    bake_one(job, &telling, &arguments.reporting)
+}
+
+/// The normal map that was given; n_z does not depend on which way its green points.
+fn given_normals(arguments: &ParallaxArguments) -> Option<NormalInput> {
+    let read = NormalReadOptions {
+        encoding: arguments.normal_encoding,
+        channels: arguments.normal_channels,
+        max_bytes: max_bytes(arguments.heights.max_bytes),
+        ..NormalReadOptions::default()
+    };
+    arguments.normal.clone().map(|path| NormalInput { path, read })
+}

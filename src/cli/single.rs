@@ -1,0 +1,56 @@
+//! One file: baked, reported, and described to a shader.
+
+use super::args::Reporting;
+use super::exit::{Exit, Failure};
+use super::interruptible;
+use super::print::{bake_line, parallax_line, say};
+use super::progress::{Progress, Verbosity};
+use std::num::NonZeroU32;
+use std::path::Path;
+use std::time::Instant;
+use texbake::batch::{Job, JsonFile, ParallaxSidecar, Report, run};
+
+/// What is told about a parallax map.
+pub struct ParallaxTelling<'a> {
+    /// Steps of the shader.
+    pub iterations: NonZeroU32,
+    /// The JSON file beside it.
+    pub sidecar: Option<&'a Path>,
+}
+
+/// Bakes one file, and says how it went.
+pub fn bake_one(job: Job, telling: &ParallaxTelling<'_>, reporting: &Reporting) -> Result<Exit, Failure> {
+    let jobs = [job];
+    let mut files = Job::all_files(&jobs);
+    let sidecar = telling.sidecar.map(|path| JsonFile::create("sidecar", path, &files, None)).transpose()?;
+    files[0].outputs.extend(telling.sidecar);
+    let report_file = reporting.report.as_deref().map(|path| JsonFile::create("report", path, &files, None));
+    let report_file = report_file.transpose()?;
+
+    let monitor = interruptible();
+    let progress = Progress::new(&[&jobs[0].input], &monitor, Verbosity::of(reporting, Verbosity::Warnings));
+    let start = Instant::now();
+    let outcomes = progress.during(|| run(&jobs, 1, &monitor, &|event| progress.watch(&jobs, event)));
+    let time = start.elapsed();
+
+    let numbers = ParallaxSidecar::of(&jobs[0], &outcomes[0], telling.iterations);
+    if let Some((file, numbers)) = sidecar.zip(numbers.as_ref()) {
+        file.write(numbers)?;
+    }
+    if !reporting.quiet {
+        bake_line(&jobs[0], &outcomes[0]).iter().for_each(say);
+        numbers.iter().map(|sidecar| parallax_line(&sidecar.numbers)).for_each(say);
+    }
+    let report = Report::new(&jobs, &outcomes, time, &[], None, telling.iterations);
+    if let Some(file) = report_file {
+        file.write(&report)?;
+    }
+    Ok(match report.totals {
+        totals if totals.baked == 1 => Exit::Success,
+        totals if totals.failed == 1 => Exit::Failed,
+        _ => {
+            say(format_args!("{} was not baked", jobs[0].input.display()));
+            Exit::Interrupted
+        }
+    })
+}

@@ -1,0 +1,24 @@
+//! What is wrong with a normal map, and how two of them differ.
+//!
+//! [`check`] reads a map once and finds faults, [`repair`] mends those that arithmetic can mend, [`Difference`]
+//! compares two maps, and [`heatmap`] paints where they differ. Maps are read row by row, in memory that does not grow
+//! with their height.
+
+mod banding;
+mod census;
+mod check;
+mod diff;
+mod green;
+mod heatmap;
+mod read;
+mod repair;
+mod seams;
+
+pub use banding::Banding;
+pub use census::{Census, Counted, Tally, Texel};
+pub use check::{CheckOptions, Finding, Findings, Problem, Severity, check, check_file};
+pub use diff::{CodeDifference, Difference};
+pub use green::Green;
+pub use heatmap::heatmap;
+pub use repair::{Repaired, repair};
+pub use seams::{Seam, Seams};

@@ -1,0 +1,140 @@
+//! What arithmetic can mend: lengths, z at or below zero, texels without direction, and green.
+
+use crate::baker::{Baker, Ran};
+use crate::error::Result;
+use crate::map::{CodesMut, Encoding, NormalFormat, Size};
+use crate::ops::GREATEST_COMPONENT;
+use crate::ops::blend::{BlendInputs, BlendMethod, BlendOptions};
+use crate::stream::{Monitor, NormalRows, NormalSource, RowsOut};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+/// How a repair ran.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Repaired {
+    /// Where it ran.
+    pub ran: Ran,
+    /// Texels of NaN, infinity or more than 65536, which are (0, 0, 1) now.
+    pub flattened: u64,
+}
+
+/// Mends a normal map: the rows from `open` go into rows for `create`, in `format`.
+///
+/// - Every normal gets the length 1, correctly rounded for maps of integers: the map is blended with a flat one, with
+///   the weights 1 and 0 ([`BlendMethod::Weighted`]).
+/// - z at or below zero becomes the least above zero before that, and so a zero vector (0, 0, 1). A normal so steep
+///   may be rounded to z of zero again.
+/// - A texel of floats without direction becomes (0, 0, 1).
+/// - Green is turned around if the convention of `format` is not that of the rows.
+///
+/// # Errors
+/// As [`Baker::blend_rows`].
+pub fn repair(
+    baker: &Baker,
+    open: &dyn Fn() -> Result<NormalRows>,
+    create: &dyn Fn(Size) -> Result<RowsOut>,
+    format: NormalFormat,
+    monitor: &Monitor,
+) -> Result<Repaired> {
+    let flattened = Arc::new(AtomicU64::new(0));
+    let open = || {
+        // Rows of a try that failed are counted again.
+        flattened.store(0, Relaxed);
+        let source = open()?;
+        let detail: NormalRows = Box::new(Flat { size: source.size(), format: source.format() });
+        let base: NormalRows = Box::new(Flattened { source, count: flattened.clone() });
+        Ok(BlendInputs { base, detail, mask: None })
+    };
+    let method = BlendMethod::Weighted { base: 1.into(), detail: 0.into() };
+    let options = BlendOptions { method, format, ..BlendOptions::default() };
+    let ran = baker.blend_rows(&open, create, &options, monitor)?.ran;
+    Ok(Repaired { ran, flattened: flattened.load(Relaxed) })
+}
+
+/// (0, 0, 1) everywhere.
+struct Flat {
+    size: Size,
+    format: NormalFormat,
+}
+
+impl NormalSource for Flat {
+    fn size(&self) -> Size {
+        self.size
+    }
+
+    fn format(&self) -> NormalFormat {
+        self.format
+    }
+
+    fn read(&mut self, rows: CodesMut<'_>) -> Result<()> {
+        let channels = self.format.channels.count();
+        match rows {
+            CodesMut::U8(codes) => fill(codes, channels, self.integers().map(|code| code as u8)),
+            CodesMut::U16(codes) => fill(codes, channels, self.integers().map(|code| code as u16)),
+            CodesMut::F16(codes) => fill(codes, channels, [half::f16::ZERO, half::f16::ZERO, half::f16::ONE]),
+            CodesMut::F32(codes) => fill(codes, channels, [0.0, 0.0, 1.0]),
+        }
+        Ok(())
+    }
+}
+
+impl Flat {
+    /// The codes of (0, 0, 1).
+    fn integers(&self) -> [u32; 3] {
+        let greatest = self.format.encoding.greatest_code(self.format.depth).unwrap_or(0);
+        match self.format.encoding {
+            Encoding::Unorm => [greatest.div_ceil(2), greatest.div_ceil(2), greatest],
+            Encoding::Biased => [greatest + 1, greatest + 1, 2 * greatest + 1],
+            Encoding::Snorm | Encoding::Float => [0, 0, greatest],
+        }
+    }
+}
+
+fn fill<T: Copy>(codes: &mut [T], channels: usize, texel: [T; 3]) {
+    codes.chunks_exact_mut(channels).for_each(|codes| codes.copy_from_slice(&texel[..channels]));
+}
+
+/// A map whose texels without direction are (0, 0, 1).
+struct Flattened {
+    source: NormalRows,
+    count: Arc<AtomicU64>,
+}
+
+impl NormalSource for Flattened {
+    fn size(&self) -> Size {
+        self.source.size()
+    }
+
+    fn format(&self) -> NormalFormat {
+        self.source.format()
+    }
+
+    fn read(&mut self, mut rows: CodesMut<'_>) -> Result<()> {
+        let all = 0..rows.len();
+        self.source.read(rows.slice(all))?;
+        let channels = self.format().channels.count();
+        let flattened = match rows {
+            CodesMut::U8(_) | CodesMut::U16(_) => 0,
+            CodesMut::F16(codes) => {
+                let flat = [half::f16::ZERO, half::f16::ZERO, half::f16::ONE];
+                flatten(codes, channels, flat, |code| code.to_f32())
+            }
+            CodesMut::F32(codes) => flatten(codes, channels, [0.0, 0.0, 1.0], |code| code),
+        };
+        self.count.fetch_add(flattened, Relaxed);
+        Ok(())
+    }
+}
+
+/// Makes texels without direction flat; how many.
+fn flatten<T: Copy>(codes: &mut [T], channels: usize, flat: [T; 3], float: impl Fn(T) -> f32) -> u64 {
+    let mut count = 0;
+    for texel in codes.chunks_exact_mut(channels) {
+        // NaN compares as not within.
+        if !texel.iter().all(|code| float(*code).abs() <= GREATEST_COMPONENT) {
+            texel.copy_from_slice(&flat[..channels]);
+            count += 1;
+        }
+    }
+    count
+}
