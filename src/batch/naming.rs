@@ -1,8 +1,8 @@
 //! What the maps of a height map are called.
 
 use super::Found;
-use crate::baker::Maps;
 use crate::error::{Error, Result};
+use crate::map::Maps;
 use crate::names::{named, one_of};
 use std::fmt;
 use std::path::{Component, Path, PathBuf};
