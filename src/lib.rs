@@ -23,6 +23,7 @@
 //! - [`Baker::bake`] makes normal and parallax map in one pass; [`Baker::blend`] makes one normal map of two.
 //! - [`Baker::bake_rows`] and [`Baker::blend_rows`] work while rows are read and written, in memory that does not grow
 //!   with the map; [`stream`] has the traits of their ends.
+//! - [`inspect`] finds what is wrong with a normal map, mends it, and compares two.
 #![cfg_attr(feature = "gpu", doc = "- [`gpu::Hosted`] bakes on the caller's own wgpu device, without a readback.")]
 //!
 //! # What is held in memory

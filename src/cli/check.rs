@@ -203,7 +203,7 @@ fn mend(input: &Path, output: &Path, read: &NormalReadOptions, options: &RepairA
     let create = |size| create_normals(output, size, format);
     let repaired = repair(&Baker::cpu(), &open, &create, format, &interruptible())?;
     say(format_args!(
-        "{}: repaired to {} {} {} {}, {} texels without direction made flat",
+        "{}: repaired to {} {} {} {}; texels without direction made flat: {}",
         output.display(),
         format.encoding,
         format.depth,
