@@ -94,6 +94,9 @@ fn formula(
     match method {
         // a x1/z1 + b x2/z2 and 1, times both denominators of the weights and both z (FGED2 eq. 7.46).
         BlendMethod::Weighted { .. } | BlendMethod::Masked => {
+            let common = da.lcm(&db);
+            let greatest = common.max((na * common / da).abs()).max((nb * common / db).abs());
+            assert!(greatest <= 65_535, "weights with a part of {greatest} are replaced by nearby ones");
             let slope = |part1: i128, part2: i128| na * db * part1 * z2 + nb * da * part2 * z1;
             [slope(x1, x2), slope(y1, y2), da * db * z1 * z2]
         }
