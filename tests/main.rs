@@ -1,5 +1,6 @@
 //! One test binary: every topic is a folder, and README.md says what proves what.
 
+mod blend;
 #[cfg(feature = "cli")]
 mod cli;
 #[cfg(feature = "gpu")]
@@ -8,6 +9,7 @@ mod inspect;
 mod io;
 mod normal;
 mod oracle;
+mod parallax;
 mod sabotage;
 mod stream;
 mod support;

@@ -33,9 +33,7 @@ impl Weights {
         let of_q = |q: i64| [over(base, q), over(detail, q)];
         let fits = |q: i64| of_q(q).iter().all(|part| part.abs() <= GREATEST_PART.into());
         for weight in [base, detail] {
-            if weight.numerator().abs() / GREATEST_PART > weight.denominator()
-                || over(weight, 1).abs() > GREATEST_PART.into()
-            {
+            if i128::from(weight.numerator()).abs() > i128::from(GREATEST_PART) * i128::from(weight.denominator()) {
                 return Err(Error::parameter("weights", weight, "between -65535 and 65535"));
             }
         }
@@ -104,5 +102,6 @@ mod tests {
         assert!((f64::from(base) / f64::from(q) - std::f64::consts::PI).abs() < 1.6e-7);
         assert!(Weights::new(65536.into(), 1.into()).is_err());
         assert!(Weights::new(1.into(), (-65536).into()).is_err());
+        assert!(Weights::new(1.into(), Rational::new(-131_071, 2).unwrap()).is_err());
     }
 }

@@ -1,16 +1,13 @@
-//! Codes of integer heights: A / sqrt(S) rounded by integer square roots.
-//!
-//! floor(m |A| / sqrt(S)) is the integer square root of floor(m^2 A^2 / S), and it is exact if its square times S is
-//! m^2 A^2. Both encodings follow from that floor, since floor((r + n) / 2) = floor((floor(r) + n) / 2) for integers n.
+//! Normal maps of integer heights.
 
-use super::nearest_float::FloatLayout;
+use super::rounding::{Rounded, Whole, rounded, square};
 use super::slopes::{axis_scales, slope_sums, stencil};
 use crate::support::Image;
 use num_bigint::BigInt;
-use num_integer::{Integer, Roots};
-use num_traits::{Signed, ToPrimitive};
+use num_integer::Integer;
+use num_traits::ToPrimitive;
 use std::collections::HashMap;
-use texbake::{Channels, Convention, Depth, Encoding, HeightMap, NormalFormat, NormalOptions};
+use texbake::{Convention, HeightMap, NormalFormat, NormalOptions};
 
 /// The codes of a normal map.
 pub fn image(map: &HeightMap, options: &NormalOptions) -> Image {
@@ -25,13 +22,6 @@ pub fn ties(map: &HeightMap, options: &NormalOptions) -> usize {
     texels(map, options).iter().flat_map(|texel| &texel[..channels]).filter(|rounded| rounded.tie).count()
 }
 
-/// A code as it is stored.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Rounded {
-    bits: u32,
-    tie: bool,
-}
-
 fn texels(map: &HeightMap, options: &NormalOptions) -> Vec<[Rounded; 3]> {
     let factors = Factors::new(map, options);
     let rounded = |sums| match factors.small() {
@@ -43,20 +33,16 @@ fn texels(map: &HeightMap, options: &NormalOptions) -> Vec<[Rounded; 3]> {
     sums.into_iter().map(|sums| *known.entry(sums).or_insert_with(|| rounded(sums))).collect()
 }
 
-/// Integers of any width.
-trait Whole: Clone + Integer + Signed + Roots + From<i64> + ToPrimitive + Into<BigInt> {}
-impl<T: Clone + Integer + Signed + Roots + From<i64> + ToPrimitive + Into<BigInt>> Whole for T {}
-
 /// The normal is (x Gx, y Gy, z) over its length.
-struct Factors<T> {
+pub struct Factors<T> {
     x: T,
     y: T,
-    z: T,
+    pub z: T,
 }
 
 impl Factors<BigInt> {
     /// Eq. 7.43, (-dx, -dy, 1) with dx = s_x Gx / (D M) and s_x = n_x / d_x, times d_x d_y D M.
-    fn new(map: &HeightMap, options: &NormalOptions) -> Self {
+    pub fn new(map: &HeightMap, options: &NormalOptions) -> Self {
         let (_, divisor) = stencil(options.filter);
         let greatest = map.height_type().greatest_code().expect("integer heights");
         let [(nx, dx), (ny, dy)] = axis_scales(options.scale, map.size());
@@ -71,7 +57,7 @@ impl Factors<BigInt> {
     }
 
     /// The same in 128 bits, if (2^16 A)^2 and S fit: |G| is below 2^21.
-    fn small(&self) -> Option<Factors<i128>> {
+    pub fn small(&self) -> Option<Factors<i128>> {
         let fits = self.x.bits().max(self.y.bits()) <= 24 && self.z.bits() <= 46;
         let small = |factor: &BigInt| factor.to_i128().filter(|_| fits);
         Some(Factors { x: small(&self.x)?, y: small(&self.y)?, z: small(&self.z)? })
@@ -79,87 +65,23 @@ impl Factors<BigInt> {
 }
 
 impl<T: Whole> Factors<T> {
-    fn rounded(&self, [gx, gy]: [i64; 2], format: NormalFormat) -> [Rounded; 3] {
-        let normal = [self.x.clone() * gx.into(), self.y.clone() * gy.into(), self.z.clone()];
-        let square = normal.iter().fold(T::zero(), |sum, part| sum + part.clone() * part.clone());
-        normal.map(|part| match format.depth {
-            Depth::Float16 => {
-                Rounded { bits: FloatLayout::F16.nearest(&part.into(), &square.clone().into()), tie: false }
-            }
-            Depth::Float32 => {
-                Rounded { bits: FloatLayout::F32.nearest(&part.into(), &square.clone().into()), tie: false }
-            }
-            Depth::Bits8 => code(part, &square, format.encoding, 8),
-            Depth::Bits16 => code(part, &square, format.encoding, 16),
-        })
+    /// The normal of two stencil sums, times some number.
+    pub fn normal(&self, [gx, gy]: [i64; 2]) -> [T; 3] {
+        [self.x.clone() * gx.into(), self.y.clone() * gy.into(), self.z.clone()]
     }
-}
 
-/// The nearest code of `bits` bits to a / sqrt(s).
-fn code<T: Whole>(a: T, s: &T, encoding: Encoding, bits: u32) -> Rounded {
-    let mask = (1 << bits) - 1;
-    let half_up = |doubled: i64, exact: bool| ((doubled + 1).div_euclid(2), exact && doubled.rem_euclid(2) == 1);
-    match encoding {
-        Encoding::Unorm => {
-            // L (v + 1) / 2 is half of L v + L.
-            let greatest = (1 << bits) - 1;
-            let (floor, exact) = floor_of_multiple(greatest, a, s);
-            let (code, tie) = half_up(floor + greatest, exact);
-            Rounded { bits: code as u32, tie }
-        }
-        Encoding::Snorm | Encoding::Biased => {
-            let greatest = (1 << (bits - 1)) - 1;
-            let (floor, exact) = floor_of_multiple(2 * greatest, a, s);
-            let (code, tie) = half_up(floor, exact);
-            assert!(!tie, "a sum of three squares that is 4^k times an odd square halves to no integer");
-            let offset = if encoding == Encoding::Biased { greatest + 1 } else { 0 };
-            Rounded { bits: (code + offset) as u32 & mask, tie }
-        }
-        Encoding::Float => panic!("floats have no codes"),
+    fn rounded(&self, sums: [i64; 2], format: NormalFormat) -> [Rounded; 3] {
+        let normal = self.normal(sums);
+        let square = square(&normal);
+        normal.map(|part| rounded(part, &square, format.encoding, format.depth))
     }
-}
-
-/// floor(m a / sqrt(s)), and whether nothing was cut off.
-fn floor_of_multiple<T: Whole>(m: i64, a: T, s: &T) -> (i64, bool) {
-    let negative = a.is_negative();
-    let multiple = T::from(m) * a;
-    let square = multiple.clone() * multiple;
-    let root = (square.clone() / s.clone()).sqrt();
-    let exact = root.clone() * root.clone() * s.clone() == square;
-    let root = root.to_i64().expect("no component is above 1");
-    if negative { (-root - i64::from(!exact), exact) } else { (root, exact) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::support::{BIASED8, FORMATS, Random, SNORM8, UNORM8, UNORM16, map_u16, options};
-
-    fn codes(normal: [i64; 3], format: NormalFormat) -> [(u32, bool); 3] {
-        let square: i64 = normal.iter().map(|part| part * part).sum();
-        normal.map(|part| {
-            let bits = 8 * format.depth.bytes() as u32;
-            let Rounded { bits, tie } = code(BigInt::from(part), &square.into(), format.encoding, bits);
-            (bits, tie)
-        })
-    }
-
-    #[test]
-    fn known_vectors_have_known_codes() {
-        // 127.5 (v + 1): 212.5, 170, 212.5.
-        assert_eq!(codes([2, 1, 2], UNORM8), [(213, true), (170, false), (213, true)]);
-        // 42.5 rounds up as well.
-        assert_eq!(codes([-2, -1, 2], UNORM8), [(43, true), (85, false), (213, true)]);
-        // 204, 127.5, 229.5.
-        assert_eq!(codes([3, 0, 4], UNORM8), [(204, false), (128, true), (230, true)]);
-        assert_eq!(codes([0, 0, 1], UNORM8), [(128, true), (128, true), (255, false)]);
-        // 32767.5 (v + 1): 54612.5 and 43690.
-        assert_eq!(codes([2, 1, 2], UNORM16), [(54613, true), (43690, false), (54613, true)]);
-        // 127 v: -84.67, 42.33, 84.67; -84 and -85 as bytes are 172 and 171.
-        assert_eq!(codes([-2, 1, 2], SNORM8), [(171, false), (42, false), (85, false)]);
-        assert_eq!(codes([-2, 0, 2], BIASED8), [(38, false), (128, false), (218, false)]);
-        assert_eq!(codes([-1, 0, 0], SNORM8)[0], (129, false));
-    }
+    use crate::support::{FORMATS, Random, UNORM8, map_u16, options};
+    use texbake::Channels;
 
     #[test]
     fn big_and_small_integers_agree() {

@@ -2,7 +2,9 @@
 
 use super::{Image, assert_same};
 use std::sync::OnceLock;
-use texbake::{Baker, HeightMap, NormalOptions};
+use texbake::{
+    Baker, BlendInputs, BlendOptions, HeightMap, NormalMap, NormalOptions, ParallaxFormat, ParallaxOptions, Precision,
+};
 
 /// A baker under test.
 pub struct Subject {
@@ -50,5 +52,34 @@ pub fn assert_every_baker(map: &HeightMap, options: &NormalOptions, expected: &I
     for Subject { name, baker } in every_baker() {
         let baked = baker.normal(map, options).unwrap_or_else(|error| panic!("{name}, {options:?}: {error}"));
         assert_same(format_args!("{name}, {} heights, {options:?}", map.height_type()), &Image::from(&baked), expected);
+    }
+}
+
+/// Every baker blends two maps into exactly the expected codes.
+pub fn assert_every_blend(inputs: &BlendInputs<&NormalMap, &HeightMap>, options: &BlendOptions, expected: &Image) {
+    let formats = [inputs.base.format(), inputs.detail.format()];
+    for Subject { name, baker } in every_baker() {
+        let what = format!("{name}, {formats:?}, {options:?}");
+        let blended = baker.blend(inputs, options).unwrap_or_else(|error| panic!("{what}: {error}"));
+        assert_same(what, &Image::from(&blended), expected);
+    }
+}
+
+/// Every baker makes exactly the expected parallax map of a height map.
+pub fn assert_every_parallax(map: &HeightMap, options: &ParallaxOptions, expected: &Image<ParallaxFormat>) {
+    for Subject { name, baker } in every_baker() {
+        let what = format!("{name}, {} heights, {options:?}", map.height_type());
+        let baked = baker.parallax(map, options).unwrap_or_else(|error| panic!("{what}: {error}"));
+        assert_same(what, &Image::from(&baked), expected);
+    }
+}
+
+/// Every baker makes exactly the expected parallax map of a height map and a normal map.
+pub fn assert_every_parallax_with_normals(map: &HeightMap, normals: &NormalMap, expected: &Image<ParallaxFormat>) {
+    for Subject { name, baker } in every_baker() {
+        let what = format!("{name}, {} heights, {:?}, {:?}", map.height_type(), normals.format(), expected.format);
+        let baked = baker.parallax_with_normals(map, normals, expected.format, Precision::Exact);
+        let baked = baked.unwrap_or_else(|error| panic!("{what}: {error}"));
+        assert_same(what, &Image::from(&baked), expected);
     }
 }

@@ -1,17 +1,23 @@
 //! What every topic needs: the bakers under test, the comparison of codes, chance, and maps of chosen slopes.
 
 mod bakers;
+mod codes;
 mod compare;
 mod pairs;
 mod random;
 
-pub use bakers::{Subject, assert_every_baker, every_baker};
-pub use compare::{Image, assert_same, differences};
+pub use bakers::{
+    Subject, assert_every_baker, assert_every_blend, assert_every_parallax, assert_every_parallax_with_normals,
+    every_baker,
+};
+pub use codes::{dx, flat_map, landmarks, map_of_texels, normal_map, random_codes, xy};
+pub use compare::{Format, Image, assert_same, differences};
 pub use pairs::{every_difference_pair, greatest_sum, map_of_pairs};
 pub use random::Random;
 
 use texbake::{
-    Channels, Convention, Depth, Edge, Edges, Encoding, Filter, Grid, HeightMap, NormalFormat, NormalOptions, Scale,
+    BlendInputs, BlendMethod, BlendOptions, Channels, Convention, Depth, Edge, Edges, Encoding, Filter, Grid,
+    HeightMap, NormalFormat, NormalMap, NormalOptions, ParallaxFormat, ParallaxOptions, Rational, Scale,
 };
 
 pub const FILTERS: [Filter; 4] = [Filter::Central, Filter::Sobel, Filter::Scharr, Filter::Prewitt];
@@ -29,6 +35,14 @@ pub const FLOAT32: NormalFormat = format(Encoding::Float, Depth::Float32);
 /// Every encoding at every depth that it goes with.
 pub const FORMATS: [NormalFormat; 8] = [UNORM8, UNORM16, SNORM8, SNORM16, BIASED8, BIASED16, FLOAT16, FLOAT32];
 
+/// The same for parallax maps.
+pub fn parallax_formats() -> [ParallaxFormat; 8] {
+    FORMATS.map(|NormalFormat { encoding, depth, .. }| ParallaxFormat { encoding, depth })
+}
+
+/// Every integer encoding.
+pub const INTEGER_FORMATS: [NormalFormat; 6] = [UNORM8, UNORM16, SNORM8, SNORM16, BIASED8, BIASED16];
+
 const fn format(encoding: Encoding, depth: Depth) -> NormalFormat {
     NormalFormat { encoding, depth, channels: Channels::Xyz, convention: Convention::Gl }
 }
@@ -36,6 +50,31 @@ const fn format(encoding: Encoding, depth: Depth) -> NormalFormat {
 /// A scale in texels, as a user writes it.
 pub fn scale(text: &str) -> Scale {
     Scale::Texels(text.parse().expect("a number"))
+}
+
+/// A number, as a user writes it.
+pub fn number(text: &str) -> Rational {
+    text.parse().expect("a number")
+}
+
+/// Slopes weighted, as a user writes the weights.
+pub fn weighted(base: &str, detail: &str) -> BlendMethod {
+    BlendMethod::Weighted { base: number(base), detail: number(detail) }
+}
+
+/// Two maps without a mask.
+pub fn pair<'a>(base: &'a NormalMap, detail: &'a NormalMap) -> BlendInputs<&'a NormalMap, &'a HeightMap> {
+    BlendInputs { base, detail, mask: None }
+}
+
+/// A method and the result's format.
+pub fn blend_options(method: BlendMethod, format: NormalFormat) -> BlendOptions {
+    BlendOptions { method, format, ..Default::default() }
+}
+
+/// Central differences, wrapped edges.
+pub fn parallax_options(scale_text: &str, format: ParallaxFormat) -> ParallaxOptions {
+    ParallaxOptions { scale: scale(scale_text), format, ..Default::default() }
 }
 
 /// Central differences, wrapped edges.
