@@ -51,10 +51,13 @@ impl CodeReading {
     /// z of a texel that stores x and y only: floor(sqrt(L^2 - x^2 - y^2)), at least 1 (FGED2 eq. 7.44).
     #[inline(always)]
     pub fn rebuilt(&self, x: i32, y: i32) -> i32 {
-        let square = |u: i32| i64::from(u) * i64::from(u);
+        // Integers below 2^34, which f64 holds as they are.
+        let square = |u: i32| f64::from(u) * f64::from(u);
         let rest = square(self.greatest) - square(x) - square(y);
         // Below 2^32 an f64 root is exact enough that its floor is the integer root.
-        (rest.max(1) as f64).sqrt() as i32
+        let root = rest.max(1.0).sqrt().floor();
+        // Next to 1.5 * 2^52 a float's last place is 1. `as i32` saturates, which costs more.
+        (root + 6_755_399_441_055_744.0).to_bits() as i32
     }
 }
 

@@ -33,7 +33,8 @@ pub(super) fn blend(plan: &BlendPlan, layers: &[CodesRef<'_>], codes: CodesMut<'
 fn greatest_part(plan: &BlendPlan, readings: [CodeReading; 2]) -> i64 {
     let [l1, l2] = readings.map(|reading| i64::from(reading.greatest));
     let [a, b, q] = match plan.mask {
-        Some(mask) => [mask.greatest.into(); 3],
+        // M - H and H, which sum to M.
+        Some(mask) => [mask.greatest.into(), 0, mask.greatest.into()],
         None => [plan.weights.base.into(), plan.weights.detail.into(), i64::from(plan.weights.q)],
     };
     match plan.method {
@@ -44,30 +45,54 @@ fn greatest_part(plan: &BlendPlan, readings: [CodeReading; 2]) -> i64 {
     }
 }
 
-/// The numerators of both weights for each texel, and their denominator.
-struct WeightPlanes {
-    planes: [Plane<i32>; 2],
-    q: i32,
+/// The numerators of both weights of a texel, and their denominator.
+trait Weights {
+    fn of_texel(&self, at: usize) -> [i32; 3];
 }
 
-impl WeightPlanes {
-    /// Those of a plan without a mask.
-    fn new(plan: &BlendPlan) -> Self {
-        let q = plan.mask.map_or(plan.weights.q, |mask| mask.greatest) as i32;
-        Self { planes: [[plan.weights.base; BLOCK], [plan.weights.detail; BLOCK]], q }
+/// The same for all texels.
+impl Weights for [i32; 3] {
+    #[inline(always)]
+    fn of_texel(&self, _: usize) -> [i32; 3] {
+        *self
     }
+}
 
-    /// M - H and H of the mask, if there is one.
-    fn read(&mut self, layers: &[CodesRef<'_>], texels: Range<usize>) {
-        let Some(mask) = layers.get(2) else { return };
-        let [base, detail] = &mut self.planes;
-        read::scalars(*mask, texels, detail);
-        base.iter_mut().zip(detail).for_each(|(base, detail)| *base = self.q - *detail);
-    }
+/// M - H, H and M of a mask.
+struct MaskWeights {
+    planes: [Plane<i32>; 2],
+    greatest: i32,
+}
 
+impl Weights for MaskWeights {
     #[inline(always)]
     fn of_texel(&self, at: usize) -> [i32; 3] {
-        [self.planes[0][at], self.planes[1][at], self.q]
+        [self.planes[0][at], self.planes[1][at], self.greatest]
+    }
+}
+
+/// The weights of the texels of a block.
+struct BlockWeights {
+    constant: [i32; 3],
+    mask: Option<MaskWeights>,
+}
+
+impl BlockWeights {
+    fn new(plan: &BlendPlan) -> Self {
+        let mask = plan.mask.map(|mask| MaskWeights { planes: [[0; BLOCK]; 2], greatest: mask.greatest as i32 });
+        Self { constant: [plan.weights.base, plan.weights.detail, plan.weights.q as i32], mask }
+    }
+
+    /// Reads the mask's part of `layers`, if there is one.
+    fn read(&mut self, layers: &[CodesRef<'_>], texels: Range<usize>) {
+        if let Some(MaskWeights { planes: [base, detail], greatest }) = &mut self.mask {
+            read::scalars(layers[2], texels, detail);
+            base.iter_mut().zip(detail).for_each(|(base, detail)| *base = *greatest - *detail);
+        }
+    }
+
+    fn of_texel(&self, at: usize) -> [i32; 3] {
+        self.mask.as_ref().map_or(self.constant, |mask| mask.of_texel(at))
     }
 }
 
@@ -80,7 +105,7 @@ fn fill_integers<V: Real>(
     mut output: Box<dyn Output<V> + '_>,
 ) {
     let scales = [readings[0].greatest, readings[1].greatest];
-    let mut weights = WeightPlanes::new(plan);
+    let mut weights = BlockWeights::new(plan);
     let [mut base, mut detail] = [[[0; BLOCK]; 3]; 2];
     let mut normal = [[V::default(); BLOCK]; 3];
     for first in (0..texels).step_by(BLOCK) {
@@ -104,7 +129,7 @@ fn exact(method: BlendMethod, weights: [i32; 3], scales: [i32; 2], base: Vector<
 
 /// One of the maps holds floats.
 fn fill_floats(plan: &BlendPlan, layers: &[CodesRef<'_>], texels: usize, mut output: Box<dyn Output<f32> + '_>) {
-    let mut weights = WeightPlanes::new(plan);
+    let mut weights = BlockWeights::new(plan);
     let mut integers = [[0; BLOCK]; 3];
     let [mut base, mut detail, mut normal] = [[[0.0; BLOCK]; 3]; 3];
     for first in (0..texels).step_by(BLOCK) {
@@ -121,37 +146,41 @@ fn fill_floats(plan: &BlendPlan, layers: &[CodesRef<'_>], texels: usize, mut out
 
 /// A loop for each method, with the method as a constant in it.
 macro_rules! for_each_method {
-    ($method:expr, $loop_of:ident($($argument:expr),*)) => {
-        match $method {
-            // One formula; the weights differ.
-            BlendMethod::Weighted { .. } | BlendMethod::Masked => $loop_of(BlendMethod::Masked, $($argument),*),
-            BlendMethod::Linear => $loop_of(BlendMethod::Linear, $($argument),*),
-            BlendMethod::Overlay => $loop_of(BlendMethod::Overlay, $($argument),*),
-            BlendMethod::Udn => $loop_of(BlendMethod::Udn, $($argument),*),
-            BlendMethod::Whiteout => $loop_of(BlendMethod::Whiteout, $($argument),*),
-            BlendMethod::Rnm => $loop_of(BlendMethod::Rnm, $($argument),*),
+    ($method:expr, $weights:expr, $loop_of:ident($($argument:expr),*)) => {{
+        let BlockWeights { constant, mask } = $weights;
+        match ($method, mask) {
+            (BlendMethod::Masked, Some(mask)) => $loop_of(BlendMethod::Masked, mask, $($argument),*),
+            // The formula of a mask, with other weights.
+            (BlendMethod::Weighted { .. } | BlendMethod::Masked, _) => {
+                $loop_of(BlendMethod::Masked, constant, $($argument),*);
+            }
+            (BlendMethod::Linear, _) => $loop_of(BlendMethod::Linear, constant, $($argument),*),
+            (BlendMethod::Overlay, _) => $loop_of(BlendMethod::Overlay, constant, $($argument),*),
+            (BlendMethod::Udn, _) => $loop_of(BlendMethod::Udn, constant, $($argument),*),
+            (BlendMethod::Whiteout, _) => $loop_of(BlendMethod::Whiteout, constant, $($argument),*),
+            (BlendMethod::Rnm, _) => $loop_of(BlendMethod::Rnm, constant, $($argument),*),
         }
-    };
+    }};
 }
 
 vectorised! {
     /// Unit normals off by 4.5e (see [`unit`]) where V holds every part of the blend as it is.
     fn blend_to_estimates<V: Real>(
         method: BlendMethod,
-        weights: &WeightPlanes,
+        weights: &BlockWeights,
         scales: [i32; 2],
         inputs: [&[Plane<i32>; 3]; 2],
         normal: &mut [Plane<V>; 3],
         count: usize,
     ) {
-        for_each_method!(method, estimate_texels(weights, scales, inputs, normal, count));
+        for_each_method!(method, weights, estimate_texels(scales, inputs, normal, count));
     }
 }
 
 #[inline(always)]
 fn estimate_texels<V: Real>(
     method: BlendMethod,
-    weights: &WeightPlanes,
+    weights: &impl Weights,
     scales: [i32; 2],
     [base, detail]: [&[Plane<i32>; 3]; 2],
     [x, y, z]: &mut [Plane<V>; 3],
@@ -169,19 +198,19 @@ vectorised! {
     /// The reference's own arithmetic.
     fn blend_written(
         method: BlendMethod,
-        weights: &WeightPlanes,
+        weights: &BlockWeights,
         inputs: [&[Plane<f32>; 3]; 2],
         normal: &mut [Plane<f32>; 3],
         count: usize,
     ) {
-        for_each_method!(method, write_texels(weights, inputs, normal, count));
+        for_each_method!(method, weights, write_texels(inputs, normal, count));
     }
 }
 
 #[inline(always)]
 fn write_texels(
     method: BlendMethod,
-    weights: &WeightPlanes,
+    weights: &impl Weights,
     [base, detail]: [&[Plane<f32>; 3]; 2],
     [x, y, z]: &mut [Plane<f32>; 3],
     count: usize,

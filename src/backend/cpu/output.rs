@@ -176,10 +176,90 @@ vectorised! {
 
 vectorised! {
     fn interleave<C: Copy, const N: usize>(codes: &[Plane<C>; N], texels: &mut [C]) {
-        for (i, texel) in texels.as_chunks_mut::<N>().0.iter_mut().enumerate().take(BLOCK) {
-            for channel in 0..N {
+        let texels = texels.as_chunks_mut::<N>().0;
+        let count = texels.len().min(BLOCK);
+        let codes = codes.each_ref();
+        for i in 0..count {
+            let mut texel = [codes[0][i]; N];
+            for channel in 1..N {
                 texel[channel] = codes[channel][i];
             }
+            texels[i] = texel;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::real::{Real, unit};
+    use super::*;
+    use crate::exact::CodeRounding;
+    use crate::map::{Depth, Encoding};
+    use std::fmt::Debug;
+
+    /// Believes every estimate, as a bound of zero would.
+    struct Trusting<R>(R);
+
+    impl<V, R: Prove<V>> Rule<V> for Trusting<R> {
+        type Code = R::Code;
+
+        fn code(&self, component: V) -> (R::Code, bool) {
+            (self.0.code_or_doubt(component).0, false)
+        }
+
+        fn exact(&self, _: i64, _: u128) -> R::Code {
+            unreachable!("it has no doubts")
+        }
+    }
+
+    /// Normals of which a component lies half-way between two codes: Pythagorean quadruples.
+    fn ties(greatest: i32) -> Vec<[i32; 3]> {
+        let quadruple = |[x, y, z]: [i32; 3]| {
+            let length = f64::from(x * x + y * y + z * z).sqrt() as i32;
+            let is_whole = length * length == x * x + y * y + z * z;
+            is_whole && (greatest * x) % length == 0 && (greatest * x / length) % 2 == 0
+        };
+        let normals = (1..60).flat_map(|x| (0..60).flat_map(move |y| (1..60).map(move |z| [x, y, z])));
+        normals.filter(|normal| quadruple(*normal)).take(BLOCK).collect()
+    }
+
+    fn stored<V: Real, R: Rule<V>>(rule: R, normals: &[[i32; 3]]) -> Vec<R::Code> {
+        let mut planes = [[V::default(); BLOCK]; 3];
+        for (at, [x, y, z]) in normals.iter().enumerate() {
+            let components = unit([V::of_integer(*x), V::of_integer(*y), V::of_integer(*z)]);
+            planes.iter_mut().zip(components).for_each(|(plane, component)| plane[at] = component);
+        }
+        let exact = |at: usize| {
+            let [x, y, z] = normals[at];
+            ([x.into(), y.into(), z.into()], (x * x + y * y + z * z) as u128)
+        };
+        let mut codes = vec![R::Code::default(); 3 * normals.len()];
+        let [x, y, z] = &planes;
+        Texels::<R, R::Code, 3>::new(rule, &mut codes).store(&[x, y, z], normals.len(), &exact);
+        codes
+    }
+
+    fn assert_doubts_matter<V: Real, C: Copy + Default + Debug + PartialEq + TryFrom<u32>>(depth: Depth)
+    where
+        ToInteger<C>: Prove<V, Code = C>,
+    {
+        let format = TexelFormat { encoding: Encoding::Unorm, depth, channels: 3 };
+        let rounding = CodeRounding::new(format).unwrap();
+        let normals = ties(rounding.greatest);
+        let codes_of = |[x, y, z]: [i32; 3]| {
+            let s = (x * x + y * y + z * z) as u128;
+            [x, y, z].map(|part| C::try_from(rounding.code(part.into(), s)).ok().unwrap())
+        };
+        let expected: Vec<C> = normals.iter().flat_map(|normal| codes_of(*normal)).collect();
+        assert!(normals.len() > 50, "{}", normals.len());
+        assert_eq!(stored::<V, _>(Proved(ToInteger::<C>::new(format)), &normals), expected);
+        assert_ne!(stored::<V, _>(Trusting(ToInteger::<C>::new(format)), &normals), expected);
+    }
+
+    #[test]
+    fn without_doubts_ties_would_be_wrong() {
+        assert_doubts_matter::<f32, u8>(Depth::Bits8);
+        assert_doubts_matter::<f64, u8>(Depth::Bits8);
+        assert_doubts_matter::<f64, u16>(Depth::Bits16);
     }
 }

@@ -75,8 +75,8 @@ impl Arithmetic {
 
 /// (x, y, z) over its length, for integers; (0, 0, 1) for (0, 0, 0).
 ///
-/// Where x, y and z are exact in V, their squares are off by e of their value, S by 3e, its root by 2.5e, one over it by
-/// 3.5e, and the components by 4.5e.
+/// Where x, y and z are exact in V, their squares are off by e of their value, S by 3e, its root by 2.5e, one over it
+/// by 3.5e, and the components by 4.5e.
 #[inline(always)]
 pub(super) fn unit<V: Real>([x, y, z]: Vector<V>) -> Vector<V> {
     let square = (x * x + y * y) + z * z;

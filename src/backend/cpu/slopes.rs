@@ -31,10 +31,10 @@ pub(super) trait Slopes<T: Height>: Sync {
 /// The components of integer heights in floats: the normal is (kx Gx, ky Gy, 1) over its length.
 ///
 /// To first order in e (see [`super::real`]): kx is off by e of its value, x = kx Gx by 2e (|Gx| < 2^20 is exact in
-/// both), x^2 by 5e, x^2 + y^2 by 6e, S by 7e, its root by 4.5e, one over it by 5.5e. So z is off by 5.5e and x and y by
-/// 8.5e of their value. The parallax is z times (2H - M) (1/M), of which 2H - M is exact, 1/M is off by e and the product
-/// by 2e: it is off by 8.5e. Nothing leaves the range of f32: kx is 0 or above 2^-45, and x is below 2^23, for |Gx| is at
-/// most D M / 2.
+/// both), x^2 by 5e, x^2 + y^2 by 6e, S by 7e, its root by 4.5e, one over it by 5.5e. So z is off by 5.5e and x and y
+/// by 8.5e of their value. The parallax is z times (2H - M) (1/M), of which 2H - M is exact, 1/M is off by e and the
+/// two products by e each: it is off by 8.5e. Nothing leaves the range of f32: kx is 0 or above 2^-45, and x is below
+/// 2^23, for |Gx| is at most D M / 2.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Estimate<V> {
     slope: IntegerSlope,
