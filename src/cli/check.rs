@@ -28,6 +28,7 @@ Faults, each with its share, the worst texel and what to do:
   banding       8 bits, most changes being single codes between plateaus of 8 texels or more
 Notes, which are no faults:
   at-zero       z of zero: as steep as the encoding can tell
+  file          what else its reader has to say, such as that a JPEG bends normals
   seam          the edges do not fit where the map is repeated; a fault with --tiles; maps below
                 16 x 16 texels are not judged
 
