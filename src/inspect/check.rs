@@ -213,7 +213,11 @@ impl Findings {
             (finding.worst, finding.at) = (Some(length), Some(at));
         }
         let raise = repair("raises z to the least above zero");
-        let raise = format!("if the map is in tangent space at all, {raise}");
+        let raise = if below_zero.count == self.census.texels {
+            "if it holds x and y alone, as xy maps in PNG do, read it with --channels xy".into()
+        } else {
+            format!("if the map is in tangent space at all, {raise}")
+        };
         self.judge_tally(Problem::BelowZero, below_zero, "of z below zero, pointing into the surface", raise);
         let steep = "blends take z as the least above zero; bake with a lower --scale if that was not meant".into();
         self.judge_tally(Problem::AtZero, at_zero, "of z zero, as steep as the encoding can tell", steep);

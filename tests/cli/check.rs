@@ -51,6 +51,16 @@ fn sound_maps_are_ok() {
 }
 
 #[test]
+fn a_map_of_two_channels_in_a_png_is_guessed() {
+    let folder = folder();
+    folder.run(&["normal", "height.png", "-o", "xy.png", "--channels", "xy", "--scale", "10", "-q"]).ends(0);
+    let run = folder.run(&["check", "xy.png"]).ends(1);
+    assert!(run.stdout.contains("below-zero: 1024 texels (100%) of z below zero"), "{}", run.stdout);
+    assert!(run.stdout.contains("read it with --channels xy\n"), "{}", run.stdout);
+    assert_eq!(folder.run(&["check", "xy.png", "--channels", "xy"]).ends(0).stdout, "xy.png: ok\n");
+}
+
+#[test]
 fn every_fault_is_named_with_its_place_and_its_remedy() {
     let folder = folder();
     plant(&folder, "sound.png", "bad.png", &[(3, 4, [200, 128, 200]), (30, 31, [255, 128, 126]), (9, 9, [128; 3])]);
