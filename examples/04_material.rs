@@ -20,7 +20,7 @@ fn main() -> texbake::Result<()> {
     let maps = baker.bake(&bricks, &options)?;
 
     // Fine grain, repeated over the bricks at half its strength.
-    let grain = HeightMap::from(Grid::from_fn(64, 64, |x, y| (x * 73 ^ y * 151) as u8 % 32)?);
+    let grain = HeightMap::from(Grid::from_fn(64, 64, |x, y| ((x * 73) ^ (y * 151)) as u8 % 32)?);
     let grain = baker.normal(&grain, &NormalOptions { scale: Scale::texels(4), ..Default::default() })?;
     let (Some(normals), Some(parallax)) = (maps.normal, maps.parallax) else { unreachable!("both were asked for") };
     let method = BlendMethod::Weighted { base: 1.into(), detail: "1/2".parse()? };
