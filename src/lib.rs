@@ -20,6 +20,7 @@
 //! - [`HeightMap`] and [`NormalMap`] are maps with what their numbers mean attached; [`io`] reads and writes them.
 //! - [`Baker::normal_rows`] bakes while rows are read and written, in memory that does not grow with the map;
 //!   [`stream`] has the traits of its two ends.
+//! - [`inspect`] finds what is wrong with a normal map, mends it, and compares two.
 #![cfg_attr(feature = "gpu", doc = "- [`gpu::Hosted`] bakes on the caller's own wgpu device, without a readback.")]
 //!
 //! # What is held in memory

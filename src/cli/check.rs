@@ -20,14 +20,16 @@ Faults, each with its share, the worst texel and what to do:
   zero-vector   (0, 0, 0)
   non-unit      lengths that rounding a unit vector to the encoding cannot give
   below-zero    z below zero
-  green         green seems to point the other way: the slopes of heights have no curl, and these have much less of it
-                with green turned around. Flat maps, slopes along one axis and what is not made of heights: no telling
+  green         green seems to point the other way: slopes of heights have no curl, and these have
+                much less of it with green turned around; no telling for flat maps, slopes along one
+                axis and what is not made of heights
   srgb          the file says that it holds sRGB colours
   eight-bit     16 bits or floats that hold nothing but 8-bit values
-  banding       8 bits whose codes mostly change one at a time between plateaus of 8 texels or more
+  banding       8 bits, most changes being single codes between plateaus of 8 texels or more
 Notes, which are no faults:
   at-zero       z of zero: as steep as the encoding can tell
-  seam          the edges do not fit where the map is repeated; a fault with --tiles. Not judged below 16 x 16 texels
+  seam          the edges do not fit where the map is repeated; a fault with --tiles; maps below
+                16 x 16 texels are not judged
 
 Examples:
   texbake check wall_normal.png
@@ -35,8 +37,8 @@ Examples:
   texbake check rock_normal.tif --encoding biased --convention dx
   texbake check resized_normal.png --repair -o repaired_normal.png
 
-Exit status: 0 no fault, 1 a fault or a file that cannot be read, 2 wrong arguments. With --repair it is the repaired
-map that counts.")]
+Exit status: 0 no fault, 1 a fault or a file that cannot be read, 2 wrong arguments. \
+With --repair it is the repaired map that counts.")]
 pub struct CheckArguments {
     /// Normal maps: PNG, TIFF, EXR, TGA, BMP, JPEG or WebP
     #[arg(required = true, value_name = "FILE")]
@@ -203,7 +205,7 @@ fn mend(input: &Path, output: &Path, read: &NormalReadOptions, options: &RepairA
     let create = |size| create_normals(output, size, format);
     let repaired = repair(&Baker::cpu(), &open, &create, format, &interruptible())?;
     say(format_args!(
-        "{}: repaired to {} {} {} {}, {} texels without direction made flat",
+        "{}: repaired to {} {} {} {}; texels without direction made flat: {}",
         output.display(),
         format.encoding,
         format.depth,

@@ -15,13 +15,13 @@ use texbake::{Channels, Convention, Encoding, Error, NormalFormat, Result};
 /// Compare two normal maps: codes, angles, and where they differ most
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The angle of a texel is the one between both normals, whatever their lengths, in double precision. Maps of different
-encodings, bits, channels or conventions are compared by their angles, maps of one format by their codes too. The 99th
-percentile has the exact rank and is given with 12 bits behind the leading one. A texel of NaN, infinity, or (0, 0, 0)
-has no angle; it counts as a difference, unless it is the same (0, 0, 0) in both.
+The angle of a texel is the one between both normals, whatever their lengths, in double precision. \
+Maps of different encodings, bits, channels or conventions are compared by their angles, maps of one format by their \
+codes too. The 99th percentile has the exact rank and is given with 12 bits behind the leading one. \
+A texel of NaN, infinity, or (0, 0, 0) has no angle; it counts as a difference, unless it is the same (0, 0, 0) in both.
 
-The heatmap goes from black over blue, green and red to white (the cubehelix ramp, brighter for larger angles); a texel
-without an angle is magenta.
+The heatmap goes from black over blue, green and red to white (the cubehelix ramp, brighter for larger angles); \
+a texel without an angle is magenta.
 
 Examples:
   texbake diff cpu.png gpu.png

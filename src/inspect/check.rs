@@ -158,7 +158,7 @@ pub fn check_file(path: &Path, read: &NormalReadOptions, options: &CheckOptions)
         let (problem, severity) =
             if is_srgb { (Problem::Srgb, Severity::Fault) } else { (Problem::File, Severity::Note) };
         // Warnings say what to do behind a semicolon.
-        let (what, remedy) = warning.split_once("; ").unwrap_or((&warning, "nothing was changed by it"));
+        let (what, remedy) = warning.split_once("; ").unwrap_or((&warning, "see how it was exported"));
         findings.add(Finding { what: what.into(), remedy: remedy.into(), ..Finding::new(problem, severity) });
     }
     Ok(findings)
@@ -203,9 +203,9 @@ impl Findings {
         let Census { no_direction, zero_vectors, non_unit, below_zero, at_zero, worst_length, .. } = self.census;
         let repair = |mends: &str| format!("texbake check --repair {mends}");
         let flat = || repair("makes them flat");
-        self.judge_tally(Problem::NoDirection, no_direction, "hold NaN, infinity or more than 65536", flat());
-        self.judge_tally(Problem::ZeroVector, zero_vectors, "are (0, 0, 0)", flat());
-        let lengths = "are longer or shorter than rounding a unit vector makes them";
+        self.judge_tally(Problem::NoDirection, no_direction, "of NaN, infinity or more than 65536", flat());
+        self.judge_tally(Problem::ZeroVector, zero_vectors, "of (0, 0, 0)", flat());
+        let lengths = "of a length that rounding a unit vector cannot give";
         if let Some(finding) = self.judge_tally(Problem::NonUnit, non_unit, lengths, repair("gives them their length"))
             && let Some((length, at)) = worst_length
         {
@@ -214,9 +214,9 @@ impl Findings {
         }
         let raise = repair("raises z to the least above zero");
         let raise = format!("if the map is in tangent space at all, {raise}");
-        self.judge_tally(Problem::BelowZero, below_zero, "have z below zero and point into the surface", raise);
+        self.judge_tally(Problem::BelowZero, below_zero, "of z below zero, pointing into the surface", raise);
         let steep = "blends take z as the least above zero; bake with a lower --scale if that was not meant".into();
-        self.judge_tally(Problem::AtZero, at_zero, "have z of zero, as steep as their encoding can tell", steep);
+        self.judge_tally(Problem::AtZero, at_zero, "of z zero, as steep as the encoding can tell", steep);
     }
 
     /// Adds a finding if there is any texel.

@@ -126,8 +126,8 @@ pub(super) fn for_each_pair_of_rows(
                 *angle = if is_same_format && from == to { 0.0 } else { degrees(from, to) };
             }
         });
-        let all = angles.chunks_exact(size.width()).enumerate();
-        all.map(|(row, angles)| look(first_row + row, [row_of(0, row), row_of(1, row)], angles)).collect()
+        let mut all = angles.chunks_exact(size.width()).enumerate();
+        all.try_for_each(|(row, angles)| look(first_row + row, [row_of(0, row), row_of(1, row)], angles))
     })
 }
 

@@ -1,8 +1,8 @@
 //! What is wrong with a normal map, and how two of them differ.
 //!
 //! [`check`] reads a map once and finds faults, [`repair`] mends those that arithmetic can mend, [`Difference`]
-//! compares two maps, and [`heatmap`] paints where they differ. Maps are read row by row, in memory that does not grow
-//! with their height.
+//! compares two maps, and [`heatmap`] paints where they differ. Maps are read row by row: a few bands of them are in
+//! memory, and sums of 8 bytes for each row and column.
 
 mod banding;
 mod census;

@@ -60,11 +60,11 @@ fn every_fault_is_named_with_its_place_and_its_remedy() {
         lines,
         [
             "bad.png: 3 faults",
-            "  zero-vector: 1 texel (0.098%) are (0, 0, 0), first at column 9, row 9; texbake check --repair makes them \
+            "  zero-vector: 1 texel (0.098%) of (0, 0, 0), first at column 9, row 9; texbake check --repair makes them \
              flat",
-            "  non-unit: 1 texel (0.098%) are longer or shorter than rounding a unit vector makes them, first at column \
+            "  non-unit: 1 texel (0.098%) of a length that rounding a unit vector cannot give, first at column \
              3, row 4, worst 0.8042 at column 3, row 4; texbake check --repair gives them their length",
-            "  below-zero: 1 texel (0.098%) have z below zero and point into the surface, first at column 30, row 31; if \
+            "  below-zero: 1 texel (0.098%) of z below zero, pointing into the surface, first at column 30, row 31; if \
              the map is in tangent space at all, texbake check --repair raises z to the least above zero",
             "sound.png: ok",
         ]
@@ -126,7 +126,7 @@ fn a_repair_mends_what_it_can_and_leaves_the_input() {
     let run = folder.run(&["check", "bad.png", "--repair", "-o", "mended.png"]).ends(0);
     assert!(run.stdout.starts_with("bad.png: 3 faults\n"), "{}", run.stdout);
     assert!(run.stdout.contains("\nmended.png: ok\n"), "{}", run.stdout);
-    run.says("mended.png: repaired", &["unorm 8 xyz gl", "0 texels without direction made flat"]);
+    run.says("mended.png: repaired", &["unorm 8 xyz gl", "texels without direction made flat: 0"]);
     let (_, _, codes) = read_png(&folder.path("mended.png"));
     let CodesRef::U8(codes) = codes.as_ref() else { panic!("8 bits") };
     let texel = |x: usize, y: usize| &codes[3 * (SIDE * y + x)..][..3];
@@ -159,11 +159,11 @@ fn floats_without_direction_are_made_flat() {
     let run = folder.run(&["check", "nan.exr", "--repair", "-o", "mended.exr"]).ends(0);
     assert!(
         run.stdout
-            .contains("no-direction: 1 texel (6.2%) hold NaN, infinity or more than 65536, first at column 2, row 1"),
+            .contains("no-direction: 1 texel (6.2%) of NaN, infinity or more than 65536, first at column 2, row 1"),
         "{}",
         run.stdout
     );
-    run.says("mended.exr: repaired", &["1 texels without direction"]);
+    run.says("mended.exr: repaired", &["texels without direction made flat: 1"]);
     let mended = texbake::NormalMap::read(folder.path("mended.exr")).unwrap();
     assert_eq!(mended.codes(), CodesRef::F32(&[0.0, 0.0, 1.0].repeat(16)));
 }

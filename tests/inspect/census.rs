@@ -33,7 +33,7 @@ fn lengths_that_rounding_cannot_give_are_counted() {
     assert_eq!((finding.at, finding.worst), (Some(texel(3, 4)), Some(length)));
     assert_eq!(
         finding.what,
-        "3 texels (0.75%) are longer or shorter than rounding a unit vector makes them, first at column 3, row 4, \
+        "3 texels (0.75%) of a length that rounding a unit vector cannot give, first at column 3, row 4, \
          worst 0.8042 at column 3, row 4"
     );
     assert_eq!(finding.remedy, "texbake check --repair gives them their length");
