@@ -130,7 +130,7 @@ impl Job {
         let (Maps { normal: None, parallax: Some(_) }, Some(format), None) =
             (&self.outputs, self.options.parallax, self.options.normal)
         else {
-            return Err(Error::parameter("maps", "with a normal map given", "parallax alone"));
+            return Err(Error::parameter("maps", "other maps", "parallax alone, where a normal map is given"));
         };
         let (heights, normals) = (HeightWatch::new(&self.input, &self.read), normals.watch());
         let open = || {
@@ -175,4 +175,25 @@ pub(super) fn create_folder_of(file: &Path) -> Result<()> {
 fn inexact_scale(baked: &Baked) -> Option<String> {
     let scale = baked.scale;
     (!scale.exact).then(|| format!("the scale has too many digits: {scale}, the nearest one that fits, was used"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::NormalReadOptions;
+
+    #[test]
+    fn a_given_normal_map_is_for_a_parallax_map_alone() {
+        let given = NormalInput { path: "given.png".into(), read: NormalReadOptions::default() };
+        let job = Job {
+            input: "h.png".into(),
+            outputs: Maps { normal: Some("n.png".into()), parallax: None },
+            normals: Some(given),
+            read: ReadOptions::default(),
+            options: BakeOptions::default(),
+            baker: Arc::new(Baker::reference()),
+        };
+        let failure = job.failure(&job.run(&Monitor::default(), &|_| ())).unwrap();
+        assert_eq!(failure, "h.png: maps is other maps: it must be parallax alone, where a normal map is given");
+    }
 }

@@ -258,7 +258,7 @@ Methods, from the normals (x1, y1, z1) and (x2, y2, z2); all results are normali
   udn                 (x1 + x2, y1 + y2, z1)
   whiteout            (x1 + x2, y1 + y2, z1 z2)
   rnm                 the second normal turned as the first one is from (0, 0, 1)
-The last five are approximations, to compare with: Hill and Barré-Brisebois, Blending in Detail, 2012.
+The last five are approximations, to compare with (Hill and Barré-Brisebois, Blending in Detail).
 
 Where z is not above zero it counts as the least above zero; such texels are counted and reported.
 
