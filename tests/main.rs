@@ -6,6 +6,7 @@ mod cli;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod io;
+mod materials;
 mod normal;
 mod oracle;
 mod parallax;
