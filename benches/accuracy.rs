@@ -5,10 +5,12 @@
 //! ```
 //!
 //! The maps are noise of every steepness from flat to vertical, 16-bit and float heights, 1024 x 1024. The angle is
-//! between the fast and the exact normal as floats, before any code is rounded.
+//! between the fast and the exact normal as floats, before any code is rounded. Blends and parallax maps have codes
+//! alone: blends are of the normal maps of the noise and of the same noise turned around, weighted 1 and -1/2.
 
 use texbake::{
-    Baker, CodesRef, Depth, Encoding, Filter, Grid, HeightMap, NormalFormat, NormalOptions, Precision, Result, Scale,
+    Baker, BlendInputs, BlendMethod, BlendOptions, CodesRef, Depth, Encoding, Filter, Grid, HeightMap, NormalFormat,
+    NormalMap, NormalOptions, ParallaxFormat, ParallaxOptions, Precision, Rational, Result, Scale,
 };
 
 const SIDE: usize = 1024;
@@ -35,8 +37,74 @@ fn main() -> Result<()> {
                 a.0, a.1, b.0, b.1
             );
         }
+        let maps = NormalMaps::new()?;
+        for (name, method) in methods()? {
+            let [a, b] = [Depth::Bits8, Depth::Bits16].map(|depth| maps.blended(&baker, method, depth));
+            print_codes(&baker, name, a?, b?);
+        }
+        for (name, map) in [("u16 to parallax", steepnesses_u16()?), ("f32 to parallax", parallax_heights()?)] {
+            let [a, b] = [Depth::Bits8, Depth::Bits16].map(|depth| parallaxes(&baker, &map, depth));
+            print_codes(&baker, name, a?, b?);
+        }
     }
     Ok(())
+}
+
+fn print_codes(baker: &Baker, name: &str, a: (f64, u32), b: (f64, u32)) {
+    let short = baker.name().chars().take(34).collect::<String>();
+    println!("{short:<34} {name:<16} {:>4.1e} {:>10} {:>12.1e} {:>9}", a.0, a.1, b.0, b.1);
+}
+
+fn methods() -> Result<[(&'static str, BlendMethod); 4]> {
+    let weighted = BlendMethod::Weighted { base: 1.into(), detail: Rational::new(-1, 2)? };
+    Ok([
+        ("blend add", BlendMethod::add()),
+        ("blend weighted", weighted),
+        ("blend linear", BlendMethod::Linear),
+        ("blend rnm", BlendMethod::Rnm),
+    ])
+}
+
+/// Two maps of 8 bits and two of 16.
+struct NormalMaps {
+    bits8: [NormalMap; 2],
+    bits16: [NormalMap; 2],
+}
+
+impl NormalMaps {
+    fn new() -> Result<Self> {
+        let maps = |depth| -> Result<[NormalMap; 2]> {
+            let format = NormalFormat { depth, ..NormalFormat::default() };
+            let options = NormalOptions { scale: Scale::texels(24), format, ..NormalOptions::default() };
+            Ok([
+                Baker::cpu().normal(&steepnesses_u16()?, &options)?,
+                Baker::cpu().normal(&turned_steepnesses_u16()?, &options)?,
+            ])
+        };
+        Ok(Self { bits8: maps(Depth::Bits8)?, bits16: maps(Depth::Bits16)? })
+    }
+
+    /// Share of the codes of a blend that differ, and the largest difference; inputs have the result's depth.
+    fn blended(&self, baker: &Baker, method: BlendMethod, depth: Depth) -> Result<(f64, u32)> {
+        let [base, detail] = if depth == Depth::Bits8 { &self.bits8 } else { &self.bits16 };
+        let blend = |precision| {
+            let format = NormalFormat { depth, ..NormalFormat::default() };
+            let options = BlendOptions { method, format, precision, ..BlendOptions::default() };
+            Ok(numbers(baker.blend(&BlendInputs { base, detail, mask: None }, &options)?.codes()))
+        };
+        Ok(differing(&blend(Precision::Exact)?, &blend(Precision::Fast)?))
+    }
+}
+
+/// Share of the codes of a parallax map that differ, and the largest difference.
+fn parallaxes(baker: &Baker, map: &HeightMap, depth: Depth) -> Result<(f64, u32)> {
+    let bake = |precision| {
+        // Biased codes differ as signed ones do, and are numbers as they stand.
+        let format = ParallaxFormat { encoding: Encoding::Biased, depth };
+        let options = ParallaxOptions { scale: Scale::texels(24), format, precision, ..ParallaxOptions::default() };
+        Ok(numbers(baker.parallax(map, &options)?.codes()))
+    };
+    Ok(differing(&bake(Precision::Exact)?, &bake(Precision::Fast)?))
 }
 
 fn bakers() -> Vec<Baker> {
@@ -48,9 +116,22 @@ fn bakers() -> Vec<Baker> {
 /// Share of the codes that differ, and the largest difference.
 fn codes(baker: &Baker, map: &HeightMap, encoding: Encoding, depth: Depth) -> Result<(f64, u32)> {
     let [exact, fast] = both(baker, map, encoding, depth)?;
-    let off: Vec<u32> = exact.iter().zip(&fast).map(|(a, b)| (a - b).abs() as u32).collect();
+    Ok(differing(&exact, &fast))
+}
+
+fn differing(exact: &[f64], fast: &[f64]) -> (f64, u32) {
+    let off: Vec<u32> = exact.iter().zip(fast).map(|(a, b)| (a - b).abs() as u32).collect();
     let differ = off.iter().filter(|off| **off > 0).count();
-    Ok((differ as f64 / off.len() as f64, off.into_iter().max().unwrap_or(0)))
+    (differ as f64 / off.len() as f64, off.into_iter().max().unwrap_or(0))
+}
+
+fn numbers(codes: CodesRef<'_>) -> Vec<f64> {
+    match codes {
+        CodesRef::U8(codes) => codes.iter().map(|code| f64::from(*code)).collect(),
+        CodesRef::U16(codes) => codes.iter().map(|code| f64::from(*code)).collect(),
+        CodesRef::F16(codes) => codes.iter().map(|code| code.to_f64()).collect(),
+        CodesRef::F32(codes) => codes.iter().map(|code| f64::from(*code)).collect(),
+    }
 }
 
 /// Mean and largest angle between the normals, in degrees.
@@ -76,13 +157,7 @@ fn both(baker: &Baker, map: &HeightMap, encoding: Encoding, depth: Depth) -> Res
             precision,
             ..Default::default()
         };
-        let baked = baker.normal(map, &options)?;
-        Ok(match baked.codes() {
-            CodesRef::U8(codes) => codes.iter().map(|code| f64::from(*code)).collect(),
-            CodesRef::U16(codes) => codes.iter().map(|code| f64::from(*code)).collect(),
-            CodesRef::F16(codes) => codes.iter().map(|code| code.to_f64()).collect(),
-            CodesRef::F32(codes) => codes.iter().map(|code| f64::from(*code)).collect(),
-        })
+        Ok(numbers(baker.normal(map, &options)?.codes()))
     };
     Ok([bake(Precision::Exact)?, bake(Precision::Fast)?])
 }
@@ -91,6 +166,18 @@ fn both(baker: &Baker, map: &HeightMap, encoding: Encoding, depth: Depth) -> Res
 fn steepnesses_u16() -> Result<HeightMap> {
     let mut noise = noise();
     Ok(Grid::from_fn(SIDE, SIDE, |x, _| (noise() >> (15 - x / 64)) as u16)?.into())
+}
+
+/// The same noise, turned around.
+fn turned_steepnesses_u16() -> Result<HeightMap> {
+    let mut noise = noise();
+    Ok(Grid::from_fn(SIDE, SIDE, |x, _| (noise() >> (x / 64)) as u16)?.into())
+}
+
+/// Heights in [0, 1] whose slopes double every 64 columns.
+fn parallax_heights() -> Result<HeightMap> {
+    let mut noise = noise();
+    Grid::from_fn(SIDE, SIDE, |x, _| 0.3 + noise() as f32 / 65536.0 * 2f32.powi((x / 64) as i32 - 16))?.try_into()
 }
 
 /// The same over many more powers of two.

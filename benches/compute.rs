@@ -1,11 +1,16 @@
-//! Compute alone: heights in memory to codes in memory, beside a copy that moves as many bytes.
+//! Compute alone: maps in memory to codes in memory, beside a copy that moves as many bytes.
 //!
 //! ```text
 //! cargo bench --bench compute                    # all, some minutes, with a table at the end
 //! cargo bench --bench compute -- 4096/u16        # what has this in its name
+//! cargo bench --bench compute -- "1024/(bake|blend)" --quick
 //! ```
 //!
-//! The output is allocated before, and the warm-up touches it. RAYON_NUM_THREADS sets the number of threads.
+//! Normal maps go to memory that is allocated before and touched by the warm-up. Blends and bakes of several maps
+//! allocate their output in each run, and so do the bakes of one map that stand beside them (`bake normal`, `bake
+//! parallax`, `bake both`). From 4096 on fresh memory costs as much as the work; glibc keeps it with
+//! `MALLOC_MMAP_MAX_=0 MALLOC_TRIM_THRESHOLD_=8000000000 MALLOC_TOP_PAD_=500000000`. RAYON_NUM_THREADS sets the number
+//! of threads.
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
 use rayon::prelude::*;
@@ -13,7 +18,8 @@ use std::cell::{LazyCell, RefCell};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 use texbake::{
-    Baker, Codes, Depth, Grid, HeightMap, HeightType, NormalFormat, NormalOptions, Precision, Result, Scale,
+    BakeOptions, Baker, BlendInputs, BlendMethod, BlendOptions, Codes, Depth, Grid, HeightMap, HeightType,
+    NormalFormat, NormalMap, NormalOptions, ParallaxFormat, Precision, Rational, Result, Scale,
 };
 
 const SIDES: [usize; 3] = [1024, 4096, 8192];
@@ -93,6 +99,7 @@ fn main() {
             }
         }
     }
+    bench_jobs(&mut criterion, &table, &subjects);
     criterion.final_summary();
     table.print();
 }
@@ -110,7 +117,24 @@ fn bench_map<F: FnOnce() -> HeightMap>(
     let format = NormalFormat { depth: output, ..NormalFormat::default() };
     let bytes = texels * (heights.bytes() + format.channels.count() * output.bytes());
     let case = format!("{side}/{heights}/rgb{output}");
-    let mut group = criterion.benchmark_group(&case);
+    let mut codes = Codes::zeroed(output, texels * format.channels.count());
+    let patient = subjects.iter().filter(|subject| subject.seconds(texels, heights) <= PATIENCE_SECONDS);
+    bench_case(criterion, table, (&case, texels, bytes), patient, &mut |Subject { baker, precision, .. }| {
+        let options =
+            NormalOptions { scale: Scale::texels(24), format, precision: *precision, ..NormalOptions::default() };
+        baker.normal_into(black_box(map), &options, codes.as_mut()).expect("the options are in range");
+    });
+}
+
+/// One case by the copy and by subjects in turn.
+fn bench_case<'a>(
+    criterion: &mut Criterion,
+    table: &Table,
+    (case, texels, bytes): (&str, usize, usize),
+    subjects: impl Iterator<Item = &'a Subject>,
+    run: &mut dyn FnMut(&Subject),
+) {
+    let mut group = criterion.benchmark_group(case);
     group.sampling_mode(SamplingMode::Flat);
     group.throughput(Throughput::ElementsAndBytes { elements: texels as u64, bytes: bytes as u64 });
     let mut bench = |name: &str, run: &mut dyn FnMut()| {
@@ -119,24 +143,137 @@ fn bench_map<F: FnOnce() -> HeightMap>(
                 let start = Instant::now();
                 (0..runs).for_each(|_| run());
                 let elapsed = start.elapsed();
-                table.add(&case, name, texels, bytes, elapsed.as_secs_f64() / runs as f64);
+                table.add(case, name, texels, bytes, elapsed.as_secs_f64() / runs as f64);
                 elapsed
             });
         });
     };
-
     let source = vec![1u8; bytes / 2];
     let mut target = vec![2u8; bytes / 2];
     bench("copy", &mut || copy(&source, black_box(&mut target)));
+    subjects.for_each(|subject| bench(&subject.name, &mut || run(subject)));
+}
 
-    let mut codes = Codes::zeroed(output, texels * format.channels.count());
-    for subject in subjects.iter().filter(|subject| subject.seconds(texels, heights) <= PATIENCE_SECONDS) {
-        let Subject { name, baker, precision, .. } = subject;
-        let options =
-            NormalOptions { scale: Scale::texels(24), format, precision: *precision, ..NormalOptions::default() };
-        bench(name, &mut || {
-            baker.normal_into(black_box(map), &options, codes.as_mut()).expect("the options are in range");
-        });
+/// A material: what blends and bakes of several maps read.
+struct Material {
+    heights: HeightMap,
+    mask: HeightMap,
+    normals8: [NormalMap; 2],
+    normals16: [NormalMap; 2],
+}
+
+impl Material {
+    fn new(side: usize) -> Result<Self> {
+        let heights = terrain(side, HeightType::U16)?;
+        let normals = |depth| -> Result<[NormalMap; 2]> {
+            let format = NormalFormat { depth, ..NormalFormat::default() };
+            let bake = |scale| {
+                let options = NormalOptions { scale: Scale::texels(scale), format, ..NormalOptions::default() };
+                Baker::cpu().normal(&heights, &options)
+            };
+            Ok([bake(24)?, bake(7)?])
+        };
+        let [normals8, normals16] = [normals(Depth::Bits8)?, normals(Depth::Bits16)?];
+        Ok(Self { mask: terrain(side, HeightType::U8)?, heights, normals8, normals16 })
+    }
+}
+
+/// A job on a material.
+struct Job {
+    name: &'static str,
+    /// Bytes of a texel, read and written.
+    texel_bytes: usize,
+    run: fn(&Subject, &Material) -> Result<()>,
+}
+
+/// Weights that make the exact products of 16-bit maps wide.
+fn weights() -> Result<BlendMethod> {
+    Ok(BlendMethod::Weighted { base: Rational::new(1000, 333)?, detail: Rational::new(-7, 333)? })
+}
+
+const JOBS: [Job; 7] = [
+    Job {
+        name: "blend/add/rgb8",
+        texel_bytes: 9,
+        run: |subject, material| subject.blend8(material, BlendMethod::add()),
+    },
+    Job {
+        name: "blend/weighted/rgb16",
+        texel_bytes: 18,
+        run: |subject, material| {
+            let [base, detail] = material.normals16.each_ref();
+            subject.blend(BlendInputs { base, detail, mask: None }, weights()?, Depth::Bits16)
+        },
+    },
+    Job {
+        name: "blend/masked/rgb8",
+        texel_bytes: 10,
+        run: |subject, material| subject.blend8(material, BlendMethod::Masked),
+    },
+    Job { name: "bake/normal/u16", texel_bytes: 5, run: |subject, material| subject.bake(material, [true, false]) },
+    Job { name: "bake/parallax/u16", texel_bytes: 3, run: |subject, material| subject.bake(material, [false, true]) },
+    Job { name: "bake/both/u16", texel_bytes: 6, run: |subject, material| subject.bake(material, [true, true]) },
+    Job {
+        name: "bake/parallax of normals/u16",
+        texel_bytes: 6,
+        run: |Subject { baker, precision, .. }, Material { heights, normals8, .. }| {
+            let format = ParallaxFormat::default();
+            black_box(baker.parallax_with_normals(heights, &normals8[0], format, *precision)?);
+            Ok(())
+        },
+    },
+];
+
+impl Subject {
+    fn blend8(&self, Material { normals8: [base, detail], mask, .. }: &Material, method: BlendMethod) -> Result<()> {
+        let mask = (method == BlendMethod::Masked).then_some(mask);
+        self.blend(BlendInputs { base, detail, mask }, method, Depth::Bits8)
+    }
+
+    fn blend(&self, inputs: BlendInputs<&NormalMap, &HeightMap>, method: BlendMethod, depth: Depth) -> Result<()> {
+        let format = NormalFormat { depth, ..NormalFormat::default() };
+        let options = BlendOptions { method, format, precision: self.precision, ..BlendOptions::default() };
+        black_box(self.baker.blend(&inputs, &options)?);
+        Ok(())
+    }
+
+    fn bake(&self, material: &Material, [normal, parallax]: [bool; 2]) -> Result<()> {
+        let options = BakeOptions {
+            scale: Scale::texels(24),
+            normal: normal.then(NormalFormat::default),
+            parallax: parallax.then(ParallaxFormat::default),
+            precision: self.precision,
+            ..BakeOptions::default()
+        };
+        black_box(self.baker.bake(&material.heights, &options)?);
+        Ok(())
+    }
+}
+
+/// Blends and bakes of several maps, on maps of each of the first two sides.
+fn bench_jobs(criterion: &mut Criterion, table: &Table, subjects: &[Subject]) {
+    const SMALL: usize = 512;
+    let small = Material::new(SMALL).expect("its size is above zero");
+    let materials = [0, 1].map(|i| LazyCell::new(move || Material::new(SIDES[i]).expect("its size is above zero")));
+    for Job { name, texel_bytes, run } in JOBS {
+        let run = |subject: &Subject, material: &Material| run(subject, material).expect("the options are in range");
+        // Seconds that a texel takes once everything is compiled.
+        let try_out = |subject: &Subject| {
+            run(subject, &small);
+            let start = Instant::now();
+            run(subject, &small);
+            start.elapsed().as_secs_f64() / (SMALL * SMALL) as f64
+        };
+        let seconds: Vec<f64> = subjects.iter().map(try_out).collect();
+        for (side, material) in SIDES.into_iter().zip(&materials) {
+            let texels = side * side;
+            let patient = subjects.iter().zip(&seconds);
+            let patient = patient.filter(|(_, seconds)| **seconds * texels as f64 <= PATIENCE_SECONDS).map(|(s, _)| s);
+            let case = format!("{side}/{name}");
+            bench_case(criterion, table, (&case, texels, texels * texel_bytes), patient, &mut |subject| {
+                run(subject, material);
+            });
+        }
     }
 }
 
@@ -187,12 +324,12 @@ impl Table {
     }
 
     fn print(&self) {
-        println!("\n{:<18} {:<36} {:>9} {:>10} {:>7}", "case", "what", "ms", "Mtexel/s", "GB/s");
+        println!("\n{:<33} {:<36} {:>9} {:>10} {:>7}", "case", "what", "ms", "Mtexel/s", "GB/s");
         for row in self.rows.borrow_mut().iter_mut() {
             row.seconds.sort_by(f64::total_cmp);
             let median = row.seconds[row.seconds.len() / 2];
             let [mtexels, gigabytes] = [row.texels as f64 / median / 1e6, row.bytes as f64 / median / 1e9];
-            println!("{:<18} {:<36} {:>9.2} {mtexels:>10.1} {gigabytes:>7.2}", row.case, row.name, median * 1e3);
+            println!("{:<33} {:<36} {:>9.2} {mtexels:>10.1} {gigabytes:>7.2}", row.case, row.name, median * 1e3);
         }
     }
 }

@@ -7,6 +7,7 @@ mod cli;
 mod gpu;
 mod inspect;
 mod io;
+mod materials;
 mod normal;
 mod oracle;
 mod parallax;

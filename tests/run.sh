@@ -109,6 +109,29 @@ choose_software_devices() {
     [ -n "$lavapipe" ] && [ -n "$swiftshader" ] && [ -n "$mesa" ]
 }
 
+# The maps of real materials, from the source package of pypbr on PyPI: fetched once, kept with the build, never in git.
+# Without a network their tests print that they were not run; TEXBAKE_REQUIRE_MATERIALS=1 makes that a failure.
+fetch_materials() {
+    local name=pypbr-0.1.0b5 folder
+    local sha256=65bf9ad4e2839bff487ca3aac3026380983116103409849709fe8d47fc85d80b
+    folder=${CARGO_TARGET_DIR:-$PWD/target}/materials
+    if [ ! -e "$folder/$name/complete" ]; then
+        mkdir -p "$folder/$name"
+        python3 -m pip download --quiet --no-deps --no-binary pypbr --dest "$folder" "${name/-/==}" \
+            && echo "$sha256  $folder/$name.tar.gz" | sha256sum --check --quiet \
+            && tar -xzf "$folder/$name.tar.gz" -C "$folder" "$name/tests/data" \
+            && touch "$folder/$name/complete"
+        rm -f "$folder/$name.tar.gz"
+    fi
+    if [ ! -e "$folder/$name/complete" ]; then
+        echo "$name is out of reach: the tests of real materials are not run"
+        [ "${TEXBAKE_REQUIRE_MATERIALS:-0}" != 1 ]
+        return
+    fi
+    export TEXBAKE_MATERIALS=$folder/$name/tests/data
+    echo "$TEXBAKE_MATERIALS"
+}
+
 # Without cargo-deny (its build takes minutes, so it is not installed here): every dependency offers one of the licences that deny.toml allows.
 check_licences() {
     local allowed others
@@ -143,6 +166,7 @@ fi
 
 check "packages" install_packages
 check "software devices" choose_software_devices
+check "materials" fetch_materials
 check "formatting" cargo fmt --check
 check "lints" cargo clippy --release --all-targets -- -D warnings
 check "lints without the gpu feature" cargo clippy --release --no-default-features --features cli -- -D warnings

@@ -77,8 +77,9 @@ fn every_method_in_the_documented_order() {
     let mut random = Random::new(0xf10a);
     for (i, formats) in INPUTS.into_iter().enumerate() {
         let [base, detail] = formats.map(|format| hard_normals(&mut random, format));
-        for (j, method) in every_method().into_iter().enumerate() {
-            let options = blend_options(method, OUTPUTS[(i + j) % OUTPUTS.len()]);
+        // Each method with two mixes: a device compiles a kernel for each.
+        for j in [i, (i + 3) % 8] {
+            let options = blend_options(every_method()[j], OUTPUTS[(i + j) % OUTPUTS.len()]);
             let inputs = pair(&base, &detail);
             assert_every_blend(&inputs, &options, &float_blend(&inputs, &options));
         }
@@ -126,12 +127,10 @@ fn masks() {
     let words = map_u16(WIDTH, HEIGHT, |x, y| (x * 1040 + 300 * y) as u16);
     for formats in [[FLOAT32, FLOAT32], [UNORM8, FLOAT16]] {
         let [base, detail] = formats.map(|format| hard_normals(&mut random, format));
-        for mask in [&bytes, &words] {
-            for format in [FLOAT32, UNORM8] {
-                let options = blend_options(BlendMethod::Masked, format);
-                let inputs = BlendInputs { mask: Some(mask), ..pair(&base, &detail) };
-                assert_every_blend(&inputs, &options, &float_blend(&inputs, &options));
-            }
+        for (mask, format) in [(&bytes, UNORM8), (&words, FLOAT32)] {
+            let options = blend_options(BlendMethod::Masked, format);
+            let inputs = BlendInputs { mask: Some(mask), ..pair(&base, &detail) };
+            assert_every_blend(&inputs, &options, &float_blend(&inputs, &options));
         }
     }
 }

@@ -4,8 +4,7 @@ use super::{assert_right, every_method};
 use crate::oracle::{UnormZero, blend};
 use crate::support::{
     BIASED16, FLOAT16, FLOAT32, FORMATS, Image, Random, SNORM8, SNORM16, Subject, UNORM8, UNORM16, assert_every_blend,
-    assert_same, blend_options, dx, every_baker, landmarks, map_of_texels, normal_map, pair, random_codes, weighted,
-    xy,
+    blend_options, dx, every_baker, landmarks, map_of_texels, normal_map, pair, random_codes, weighted, xy,
 };
 use half::f16;
 use std::collections::BTreeSet;
@@ -22,11 +21,11 @@ fn random_maps_by_every_method() {
             let formats = if i % 2 == 0 { [first, dx(second)] } else { [xy(first), second] };
             let [base, detail] = formats.map(|format| random_codes(&mut random, 83, 53, format));
             // The oracle of floats is slow.
-            for format in [UNORM16, [UNORM8, SNORM16, BIASED16][j]] {
+            for format in [UNORM16, [SNORM16, BIASED16][j % 2]] {
                 assert_right(&pair(&base, &detail), method, format);
             }
             let [base, detail] = formats.map(|format| random_codes(&mut random, 31, 17, format));
-            assert_right(&pair(&base, &detail), method, [FLOAT32, FLOAT16][(i + j) % 2]);
+            assert_right(&pair(&base, &detail), method, [FLOAT32, FLOAT16][i % 2]);
         }
     }
 }

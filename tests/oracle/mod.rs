@@ -20,7 +20,7 @@ pub use integer::{image, ties};
 pub use parallax::{parallax, parallax_with_normals};
 pub use real::{RealNormal, real_normals};
 pub use slopes::slope_sums;
-pub use texels::{UnormZero, components, normals};
+pub use texels::{UnormZero, components};
 
 use crate::support::Image;
 

@@ -2,7 +2,7 @@
 
 use crate::oracle::float_parallax;
 use crate::support::{
-    FILTERS, FLOAT32, FORMATS, Image, Random, Subject, assert_every_parallax, assert_same, dx, every_baker,
+    FILTERS, FLOAT32, FORMATS, Image, Random, Subject, assert_every_parallax, assert_same, bakers, dx, every_baker,
     every_edges, map_f32, map_u8, map_u16, parallax_formats, scale, xy,
 };
 use texbake::{BakeOptions, Baker, Filter, HeightMap, NormalFormat, NormalOptions, ParallaxFormat, ParallaxOptions};
@@ -38,14 +38,15 @@ fn both(scale_text: &str, normal: NormalFormat, parallax: ParallaxFormat) -> Bak
     BakeOptions { scale: scale(scale_text), normal: Some(normal), parallax: Some(parallax), ..Default::default() }
 }
 
-/// Every normal format beside every parallax format over the three types of heights; channels and conventions in turn.
+/// Every normal format beside every parallax format; types of heights, channels and conventions in turn. GPUs
+/// bake each format twice.
 #[test]
 fn every_mix_of_formats() {
     for (i, normal) in FORMATS.into_iter().enumerate() {
         for (j, parallax) in parallax_formats().into_iter().enumerate() {
-            let normal = [normal, xy(normal), dx(normal), dx(xy(normal))][(i + j) % 4];
+            let normal = [normal, xy(normal), dx(normal), dx(xy(normal))][(i / 2 + j) % 4];
             let options = both(["24", "-7/3", "0.35"][(i + j) % 3], normal, parallax);
-            for Subject { name, baker } in every_baker() {
+            for Subject { name, baker } in bakers((i + j) % 4 == 0) {
                 assert_fused_is_alone(name, baker, &maps()[(i + 2 * j) % 3], &options);
             }
         }
@@ -68,8 +69,10 @@ fn every_filter_and_edge() {
 #[test]
 fn sizes_of_all_kinds() {
     for (width, height) in [(1, 1), (1, 40), (40, 1), (2, 2), (3, 5), (515, 3), (130, 130)] {
-        let maps =
-            [map_u8(width, height, |x, y| (x * 7 ^ y * 3) as u8), map_f32(width, height, |x, y| (x ^ y) as f32 / 64.0)];
+        let maps = [
+            map_u8(width, height, |x, y| ((x * 7) ^ (y * 3)) as u8),
+            map_f32(width, height, |x, y| (x ^ y) as f32 / 64.0),
+        ];
         for map in &maps {
             for normal in [FORMATS[0], xy(FORMATS[1])] {
                 for Subject { name, baker } in every_baker() {

@@ -89,9 +89,10 @@ fn floats_in_either_map() {
     let integers = [UNORM8, xy(SNORM16)].map(|format| random_codes(&mut Random::new(3), WIDTH, HEIGHT, format));
     integers.iter().for_each(|normals| cases.push((&floats, normals)));
     for (i, (map, normals)) in cases.into_iter().enumerate() {
-        for step in [0, 3, 7] {
-            let format = parallax_formats()[(i + step) % 8];
-            let expected = float_parallax_with_normals(map, normals, format);
+        // A device compiles a kernel for each mix of depths.
+        let formats = parallax_formats();
+        for format in if i == 0 { &formats[..] } else { &formats[i % 8..][..1] } {
+            let expected = float_parallax_with_normals(map, normals, *format);
             assert_every_parallax_with_normals(map, normals, &expected);
         }
     }

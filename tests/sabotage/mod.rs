@@ -1,5 +1,7 @@
 //! A comparison that cannot fail proves nothing: every helper is shown to catch one wrong code.
 
+mod two_maps;
+
 use crate::oracle;
 use crate::support::{
     FLOAT32, FORMATS, Image, SNORM8, UNORM8, assert_every_baker, assert_same, differences, every_baker, map_u8, options,

@@ -7,8 +7,8 @@ mod pairs;
 mod random;
 
 pub use bakers::{
-    Subject, assert_every_baker, assert_every_blend, assert_every_parallax, assert_every_parallax_with_normals,
-    every_baker,
+    Subject, assert_blends, assert_every_baker, assert_every_blend, assert_every_parallax,
+    assert_every_parallax_with_normals, bakers, every_baker,
 };
 pub use codes::{dx, flat_map, landmarks, map_of_texels, normal_map, random_codes, xy};
 pub use compare::{Format, Image, assert_same, differences};
