@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::map::{CodesMut, Size, TexelFormat};
-use crate::stream::{CodeSink, CodeWriter, MapSink, Monitor, RowOrder, RowsOut};
+use crate::stream::{CodeSink, CodeWriter, MapSink, Monitor, RowOrder, RowSink, RowsOut};
 
 /// All rows of a map in memory, to fill.
 pub(super) fn whole_sink<'a>(codes: &'a mut CodesMut<'_>, format: TexelFormat, size: Size) -> MapSink<'a> {
@@ -14,7 +14,8 @@ pub(super) fn as_dyn<S: CodeSink>(sinks: &mut [S]) -> Vec<&mut dyn CodeSink> {
     sinks.iter_mut().map(|sink| sink as &mut dyn CodeSink).collect()
 }
 
-/// Lets `produce` fill the rows of several maps, each written on a thread of its own, and completes them.
+/// Lets `produce` fill the rows of several maps, each written on a thread of its own, and completes
+/// them all before any file gets its name.
 pub(super) fn write_watched(
     sinks: Vec<RowsOut>,
     formats: &[TexelFormat],
@@ -32,8 +33,11 @@ pub(super) fn write_watched(
     let mut sinks: Vec<Monitored<'_>> = writers.into_iter().enumerate().map(monitored).collect();
     let produced = produce(&mut as_dyn(&mut sinks));
     let texels = sinks[0].texels;
+    let finish = || {
+        let complete: Vec<RowsOut> = sinks.into_iter().map(|sink| sink.sink.complete()).collect::<Result<_>>()?;
+        complete.into_iter().try_for_each(RowSink::finish)
+    };
     // What a failed try has counted is baked again.
-    let finish = || sinks.into_iter().try_for_each(|sink| sink.sink.finish());
     produced.and_then(|()| finish()).inspect_err(|_| monitor.take_back(texels))
 }
 

@@ -82,10 +82,15 @@ impl Replacement {
         Err(Error::io(&self.target)(io::Error::new(*kind, reason.as_str())))
     }
 
+    /// Brings the bytes to the disk.
+    pub fn sync(&self) -> Result<()> {
+        self.check()?;
+        self.temporary.as_file().sync_all().map_err(Error::io(&self.target))
+    }
+
     /// Brings the bytes to the disk, then gives the file its name.
     pub fn commit(self) -> Result<()> {
-        self.check()?;
-        self.temporary.as_file().sync_all().map_err(Error::io(&self.target))?;
+        self.sync()?;
         self.temporary.persist(&self.target).map_err(|failed| Error::io(&self.target)(failed.error))?;
         Ok(())
     }

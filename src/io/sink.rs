@@ -20,7 +20,8 @@ pub(super) trait RowEncoder: Send {
 
 /// An encoder, the file that it fills, and the rows that are still to come.
 pub(super) struct FileSink {
-    encoder: Box<dyn RowEncoder>,
+    /// `None` once the file is complete.
+    encoder: Option<Box<dyn RowEncoder>>,
     replacement: Replacement,
     depth: Depth,
     row_codes: usize,
@@ -41,18 +42,18 @@ impl FileSink {
     ) -> Box<dyn RowSink> {
         let row_codes = format.row_codes(size.width());
         let (depth, height) = (format.depth, size.height());
-        let encoder = Box::new(encoder);
+        let encoder: Option<Box<dyn RowEncoder>> = Some(Box::new(encoder));
         Box::new(Self { encoder, replacement, depth, row_codes, height, next_row: Some(0), first_row_left: false })
     }
 }
 
 impl RowSink for FileSink {
     fn takes_first_row_last(&self) -> bool {
-        self.encoder.takes_first_row_last()
+        self.encoder.as_ref().is_some_and(|encoder| encoder.takes_first_row_last())
     }
 
     fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
-        let (count, depth) = (rows.len() / self.row_codes, depth_of(rows));
+        let (count, depth) = (rows.len() / self.row_codes, rows.depth());
         let starts_late = self.next_row == Some(0) && first == 1 && self.takes_first_row_last();
         if starts_late {
             (self.next_row, self.first_row_left) = (Some(1), true);
@@ -65,7 +66,7 @@ impl RowSink for FileSink {
             let range = format!("whole rows of {} codes of depth {}, {next}", self.row_codes, self.depth);
             return Err(Error::parameter("rows", given, range));
         }
-        let written = self.encoder.write(first, rows);
+        let written = self.encoder.as_mut().map_or(Ok(()), |encoder| encoder.write(first, rows));
         self.replacement.check()?;
         written?;
         self.next_row = match first + count {
@@ -76,23 +77,21 @@ impl RowSink for FileSink {
         Ok(())
     }
 
-    fn finish(self: Box<Self>) -> Result<()> {
+    fn complete(&mut self) -> Result<()> {
         if let Some(row) = self.next_row {
             return Err(Error::parameter("rows", format_args!("without row {row}"), "complete"));
         }
-        let finished = self.encoder.finish();
+        let finished = self.encoder.take().map_or(Ok(()), |encoder| encoder.finish());
         self.replacement.check()?;
         finished?;
-        self.replacement.commit()
+        self.replacement.sync()
     }
-}
 
-fn depth_of(codes: CodesRef<'_>) -> Depth {
-    match codes {
-        CodesRef::U8(_) => Depth::Bits8,
-        CodesRef::U16(_) => Depth::Bits16,
-        CodesRef::F16(_) => Depth::Float16,
-        CodesRef::F32(_) => Depth::Float32,
+    fn finish(mut self: Box<Self>) -> Result<()> {
+        if self.encoder.is_some() {
+            self.complete()?;
+        }
+        self.replacement.commit()
     }
 }
 

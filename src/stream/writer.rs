@@ -37,7 +37,15 @@ pub trait RowSink: Send {
     /// The system's or the format's reason.
     fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()>;
 
-    /// Completes the file under its final name. Without this call there is no file.
+    /// Writes what follows the last row. Of files that belong together, all are complete before any gets its name.
+    ///
+    /// # Errors
+    /// The system's or the format's reason.
+    fn complete(&mut self) -> Result<()> {
+        Ok(())
+    }
+
+    /// Completes the file, if that was not done, and gives it its final name. Without this call there is no file.
     ///
     /// # Errors
     /// The system's or the format's reason.
@@ -78,12 +86,14 @@ impl CodeWriter {
         Ok(Self { depth: format.depth, row_codes, filling: Some(filling), current: None, thread })
     }
 
-    /// Waits for the last rows and completes the file.
+    /// Waits for the last rows and completes the file, which then lacks its name only.
     ///
     /// # Errors
     /// What any row or the completion met.
-    pub fn finish(mut self) -> Result<()> {
-        self.join()?.finish()
+    pub fn complete(mut self) -> Result<Box<dyn RowSink>> {
+        let mut sink = self.join()?;
+        sink.complete()?;
+        Ok(sink)
     }
 
     fn join(&mut self) -> Result<Box<dyn RowSink>> {

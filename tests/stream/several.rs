@@ -1,0 +1,111 @@
+//! Bakes from rows to the rows of several maps.
+
+use super::rows::MemorySource;
+use crate::support::{UNORM8, map_u8};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
+use texbake::stream::{HeightRows, Monitor, RowSink, RowsOut};
+use texbake::{BakeOptions, Baker, CodesRef, Edge, Edges, Error, HeightMap, Maps, ParallaxFormat, Result, Size};
+
+/// A file of many: it tells whether it got its name.
+struct Sink {
+    bytes: Arc<Mutex<Vec<u8>>>,
+    named: Arc<AtomicUsize>,
+    row_codes: usize,
+    /// What it cannot do, if anything: write this row and those after it, or what follows the last.
+    cannot_write: Option<usize>,
+    cannot_complete: bool,
+}
+
+fn full() -> Error {
+    Error::Io { path: "codes".into(), source: std::io::Error::other("it is full") }
+}
+
+impl RowSink for Sink {
+    fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
+        let rows_end = first + rows.len() / (self.row_codes);
+        if self.cannot_write.is_some_and(|row| row < rows_end) {
+            return Err(full());
+        }
+        self.bytes.lock().expect("no panic").extend_from_slice(rows.bytes());
+        Ok(())
+    }
+
+    fn complete(&mut self) -> Result<()> {
+        assert_eq!(self.named.load(Relaxed), 0, "all are complete before one has its name");
+        if self.cannot_complete { Err(full()) } else { Ok(()) }
+    }
+
+    fn finish(self: Box<Self>) -> Result<()> {
+        self.named.fetch_add(1, Relaxed);
+        Ok(())
+    }
+}
+
+/// Bakes both maps of a height map of 64 rows; `spoil` is told which sink it may spoil.
+fn bake(spoil: impl Fn(&mut Sink, &str)) -> (Result<()>, usize, [Vec<u8>; 2]) {
+    let map = heights();
+    let named = Arc::new(AtomicUsize::new(0));
+    let bytes = [(); 2].map(|()| Arc::new(Mutex::new(Vec::new())));
+    let open = || Ok(Box::new(MemorySource::new(map.clone())) as HeightRows);
+    let create = |size: Size| {
+        let sink = |name, row_codes, bytes: &Arc<Mutex<Vec<u8>>>| {
+            let (bytes, named) = (bytes.clone(), named.clone());
+            let mut sink = Sink { bytes, named, row_codes, cannot_write: None, cannot_complete: false };
+            spoil(&mut sink, name);
+            Some(Box::new(sink) as RowsOut)
+        };
+        Ok(Maps {
+            normal: sink("normal", 3 * size.width(), &bytes[0]),
+            parallax: sink("parallax", size.width(), &bytes[1]),
+        })
+    };
+    let result = Baker::cpu().bake_rows(&open, &create, &both(), &Monitor::default()).map(drop);
+    (result, named.load(Relaxed), bytes.map(|bytes| std::mem::take(&mut *bytes.lock().expect("no panic"))))
+}
+
+fn heights() -> HeightMap {
+    map_u8(40_000, 64, |x, y| (3 * x + 7 * y) as u8)
+}
+
+fn both() -> BakeOptions {
+    let clamp = Edges::both(Edge::Clamp);
+    let (normal, parallax) = (Some(UNORM8), Some(ParallaxFormat::default()));
+    BakeOptions { edges: clamp, normal, parallax, ..Default::default() }
+}
+
+#[test]
+fn rows_of_two_maps_are_the_bytes_of_both() {
+    let (result, named, [normal, parallax]) = bake(|_, _| ());
+    result.expect("a bake");
+    assert_eq!(named, 2);
+    let maps = Baker::reference().bake(&heights(), &both()).expect("a bake");
+    assert!(maps.normal.expect("asked for").codes().bytes() == normal);
+    assert!(maps.parallax.expect("asked for").codes().bytes() == parallax);
+}
+
+#[test]
+fn neither_map_gets_its_name_unless_both_are_complete() {
+    for spoilt in ["normal", "parallax"] {
+        let (result, named, _) = bake(|sink, name| sink.cannot_complete = name == spoilt);
+        assert_eq!((result.expect_err("it is full").to_string(), named), ("codes: it is full".into(), 0), "{spoilt}");
+        // The first row, a row in the middle, the last one.
+        for row in [0, 30, 63] {
+            let (result, named, _) = bake(|sink, name| sink.cannot_write = (name == spoilt).then_some(row));
+            assert_eq!(
+                (result.expect_err("it is full").to_string(), named),
+                ("codes: it is full".into(), 0),
+                "{spoilt}"
+            );
+        }
+    }
+}
+
+#[test]
+fn sinks_must_be_those_of_the_maps() {
+    let map = heights();
+    let open = || Ok(Box::new(MemorySource::new(map.clone())) as HeightRows);
+    let create = |_: Size| Ok(Maps { normal: None, parallax: None });
+    let error = Baker::cpu().bake_rows(&open, &create, &both(), &Monitor::default()).expect_err("no sinks");
+    assert_eq!(error.to_string(), "maps is other sinks: it must be a sink for each map that the options ask for");
+}
