@@ -87,7 +87,7 @@ fn formula(method: BlendMethod, [a, b, q]: [f32; 3], [x1, y1, z1]: [f32; 3], [x2
     let blended = match method {
         BlendMethod::Weighted { .. } | BlendMethod::Masked => {
             let (first, second) = (a * z2, b * z1);
-            [first * x1 + second * x2, first * y1 + second * y2, (q * z1) * z2]
+            [first * x1 + second * x2, first * y1 + second * y2, q * (z1 * z2)]
         }
         BlendMethod::Linear => [x1 + x2, y1 + y2, z1 + z2],
         BlendMethod::Overlay => {
