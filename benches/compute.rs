@@ -6,11 +6,8 @@
 //! cargo bench --bench compute -- "1024/(bake|blend)" --quick
 //! ```
 //!
-//! Normal maps go to memory that is allocated before and touched by the warm-up. Blends and bakes of several maps
-//! allocate their output in each run, and so do the bakes of one map that stand beside them (`bake normal`, `bake
-//! parallax`, `bake both`). From 4096 on fresh memory costs as much as the work; glibc keeps it with
-//! `MALLOC_MMAP_MAX_=0 MALLOC_TRIM_THRESHOLD_=8000000000 MALLOC_TOP_PAD_=500000000`. RAYON_NUM_THREADS sets the number
-//! of threads.
+//! Codes go to memory that is allocated before and touched by the warm-up, but for parallax maps of given normals.
+//! RAYON_NUM_THREADS sets the number of threads.
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
 use rayon::prelude::*;
@@ -18,8 +15,8 @@ use std::cell::{LazyCell, RefCell};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 use texbake::{
-    BakeOptions, Baker, BlendInputs, BlendMethod, BlendOptions, Codes, Depth, Grid, HeightMap, HeightType,
-    NormalFormat, NormalMap, NormalOptions, ParallaxFormat, Precision, Rational, Result, Scale,
+    BakeOptions, Baker, BlendInputs, BlendMethod, BlendOptions, Codes, CodesMut, Depth, Grid, HeightMap, HeightType,
+    Maps, NormalFormat, NormalMap, NormalOptions, ParallaxFormat, Precision, Rational, Result, Scale,
 };
 
 const SIDES: [usize; 3] = [1024, 4096, 8192];
@@ -160,6 +157,14 @@ struct Material {
     mask: HeightMap,
     normals8: [NormalMap; 2],
     normals16: [NormalMap; 2],
+    room: RefCell<Room>,
+}
+
+/// Memory that is allocated before, and touched by the warm-up.
+struct Room {
+    rgb8: Vec<u8>,
+    rgb16: Vec<u16>,
+    grey8: Vec<u8>,
 }
 
 impl Material {
@@ -174,7 +179,9 @@ impl Material {
             Ok([bake(24)?, bake(7)?])
         };
         let [normals8, normals16] = [normals(Depth::Bits8)?, normals(Depth::Bits16)?];
-        Ok(Self { mask: terrain(side, HeightType::U8)?, heights, normals8, normals16 })
+        let texels = side * side;
+        let room = Room { rgb8: vec![0; 3 * texels], rgb16: vec![0; 3 * texels], grey8: vec![0; texels] };
+        Ok(Self { mask: terrain(side, HeightType::U8)?, heights, normals8, normals16, room: room.into() })
     }
 }
 
@@ -202,7 +209,8 @@ const JOBS: [Job; 7] = [
         texel_bytes: 18,
         run: |subject, material| {
             let [base, detail] = material.normals16.each_ref();
-            subject.blend(BlendInputs { base, detail, mask: None }, weights()?, Depth::Bits16)
+            let codes = &mut material.room.borrow_mut().rgb16;
+            subject.blend(BlendInputs { base, detail, mask: None }, weights()?, CodesMut::U16(codes))
         },
     },
     Job {
@@ -225,15 +233,22 @@ const JOBS: [Job; 7] = [
 ];
 
 impl Subject {
-    fn blend8(&self, Material { normals8: [base, detail], mask, .. }: &Material, method: BlendMethod) -> Result<()> {
-        let mask = (method == BlendMethod::Masked).then_some(mask);
-        self.blend(BlendInputs { base, detail, mask }, method, Depth::Bits8)
+    fn blend8(&self, material: &Material, method: BlendMethod) -> Result<()> {
+        let [base, detail] = &material.normals8;
+        let mask = (method == BlendMethod::Masked).then_some(&material.mask);
+        let codes = &mut material.room.borrow_mut().rgb8;
+        self.blend(BlendInputs { base, detail, mask }, method, CodesMut::U8(codes))
     }
 
-    fn blend(&self, inputs: BlendInputs<&NormalMap, &HeightMap>, method: BlendMethod, depth: Depth) -> Result<()> {
-        let format = NormalFormat { depth, ..NormalFormat::default() };
+    fn blend(
+        &self,
+        inputs: BlendInputs<&NormalMap, &HeightMap>,
+        method: BlendMethod,
+        codes: CodesMut<'_>,
+    ) -> Result<()> {
+        let format = NormalFormat { depth: codes.depth(), ..NormalFormat::default() };
         let options = BlendOptions { method, format, precision: self.precision, ..BlendOptions::default() };
-        black_box(self.baker.blend(&inputs, &options)?);
+        black_box(self.baker.blend_into(&inputs, &options, codes)?);
         Ok(())
     }
 
@@ -245,7 +260,10 @@ impl Subject {
             precision: self.precision,
             ..BakeOptions::default()
         };
-        black_box(self.baker.bake(&material.heights, &options)?);
+        let Room { rgb8, grey8, .. } = &mut *material.room.borrow_mut();
+        let maps =
+            Maps { normal: normal.then_some(CodesMut::U8(rgb8)), parallax: parallax.then_some(CodesMut::U8(grey8)) };
+        black_box(self.baker.bake_into(&material.heights, &options, maps)?);
         Ok(())
     }
 }

@@ -45,9 +45,7 @@ impl Baker {
     /// As [`Baker::normal`], and [`crate::Error::Parameter`] if `codes` is not of the format's depth and the map's
     /// size.
     pub fn normal_into(&self, heights: &HeightMap, options: &NormalOptions, codes: CodesMut<'_>) -> Result<Baked> {
-        options.format.texel().check()?;
-        options.format.texel().check_codes(heights.size(), codes.len(), codes.depth())?;
-        self.bake_into(heights, &(*options).into(), vec![codes])
+        self.bake_into(heights, &(*options).into(), Maps { normal: Some(codes), parallax: None })
     }
 
     /// Bakes a height map into a parallax map, n_z (2h - 1), with the normals of the heights themselves.
@@ -57,9 +55,8 @@ impl Baker {
     /// # Errors
     /// As [`Baker::normal`].
     pub fn parallax(&self, heights: &HeightMap, options: &ParallaxOptions) -> Result<ParallaxMap> {
-        options.format.texel().check()?;
         let mut map = ParallaxMap::zeroed(heights.size(), options.format);
-        self.bake_into(heights, &(*options).into(), vec![map.codes_mut()])?;
+        self.bake_into(heights, &(*options).into(), Maps { normal: None, parallax: Some(map.codes_mut()) })?;
         Ok(map)
     }
 
@@ -79,18 +76,28 @@ impl Baker {
     /// # Errors
     /// As [`Baker::normal`], and [`crate::Error::Parameter`] if no map is asked for.
     pub fn bake(&self, heights: &HeightMap, options: &BakeOptions) -> Result<Maps<NormalMap, ParallaxMap>> {
-        BakePlan::new(options, heights.size(), heights.height_type())?;
         let mut normal = options.normal.map(|format| NormalMap::zeroed(heights.size(), format));
         let mut parallax = options.parallax.map(|format| ParallaxMap::zeroed(heights.size(), format));
-        let normal_codes = normal.as_mut().map(NormalMap::codes_mut);
-        let codes = normal_codes.into_iter().chain(parallax.as_mut().map(ParallaxMap::codes_mut)).collect();
+        let codes = Maps {
+            normal: normal.as_mut().map(NormalMap::codes_mut),
+            parallax: parallax.as_mut().map(ParallaxMap::codes_mut),
+        };
         self.bake_into(heights, options, codes)?;
         Ok(Maps { normal, parallax })
     }
 
-    /// Bakes into the codes of the plan's maps, one after the other.
-    fn bake_into(&self, heights: &HeightMap, options: &BakeOptions, mut maps: Vec<CodesMut<'_>>) -> Result<Baked> {
+    /// Bakes a height map into the caller's memory: codes texel by texel, in rows from the top. Tells how it ran.
+    ///
+    /// # Errors
+    /// As [`Baker::bake`], and [`crate::Error::Parameter`] if the maps are others than the options ask for, or one is
+    /// not of its format's depth and the height map's size.
+    pub fn bake_into(&self, heights: &HeightMap, options: &BakeOptions, maps: Maps<CodesMut<'_>>) -> Result<Baked> {
         let plan = BakePlan::new(options, heights.size(), heights.height_type())?;
+        check_maps(&plan, &maps)?;
+        let mut maps = maps.into_vec();
+        for (codes, format) in maps.iter().zip(plan.outputs()) {
+            format.check_codes(plan.size, codes.len(), codes.depth())?;
+        }
         let (ran, ()) = self.run(|backend| {
             let mut bands = MapBands::new(heights, plan.edges.y, backend.map_band_rows(RowBytes::of_bake(&plan)));
             let whole = maps.iter_mut().zip(plan.outputs()).map(|(codes, format)| whole_sink(codes, format, plan.size));
@@ -142,9 +149,7 @@ impl Baker {
             let source = open()?;
             let plan = BakePlan::new(options, source.size(), source.height_type())?;
             let sinks = create(plan.size)?;
-            if sinks.normal.is_some() != plan.normal.is_some() || sinks.parallax.is_some() != plan.parallax.is_some() {
-                return Err(Error::parameter("maps", "other sinks", "a sink for each map that the options ask for"));
-            }
+            check_maps(&plan, &sinks)?;
             let sinks = sinks.into_vec();
             let all_take_it_last = sinks.iter().all(|sink| sink.takes_first_row_last());
             let order = match (plan.edges.y, plan.size.height()) {
@@ -159,6 +164,15 @@ impl Baker {
         })?;
         Ok(Baked { ran, height_type, scale })
     }
+}
+
+/// Fails unless there is something for each map of the plan, and for no other.
+fn check_maps<T>(plan: &BakePlan, maps: &Maps<T>) -> Result<()> {
+    let fits = |given: &Option<T>, asked: bool| given.is_some() == asked;
+    if fits(&maps.normal, plan.normal.is_some()) && fits(&maps.parallax, plan.parallax.is_some()) {
+        return Ok(());
+    }
+    Err(Error::parameter("maps", "others", "those that the options ask for"))
 }
 
 /// Sends the rows of a source through a backend into sinks.

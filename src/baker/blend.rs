@@ -5,8 +5,8 @@ use super::{Baker, Ran, check_same_size};
 use crate::backend::RowBytes;
 use crate::error::{Error, Result};
 use crate::exact::Weights;
-use crate::map::{HeightMap, NormalMap, Size};
-use crate::ops::blend::{BlendInputs, BlendMethod, BlendOptions, BlendPlan};
+use crate::map::{CodesMut, HeightMap, NormalMap, Size};
+use crate::ops::blend::{BlendInputs, BlendOptions, BlendPlan};
 use crate::stream::{
     HeightRows, LayerReader, LayerSource, MapLayers, MaskLayer, Monitor, NormalLayer, NormalRows, RowOrder, RowsOut,
     Tiled, check_components, mask_codes, read_normals,
@@ -32,10 +32,26 @@ impl Baker {
     /// a mask is missing or not wanted; [`crate::Error::NoDirection`] for a float normal that is none;
     /// [`crate::Error::Device`] if a GPU without a fallback fails.
     pub fn blend(&self, inputs: &BlendInputs<&NormalMap, &HeightMap>, options: &BlendOptions) -> Result<NormalMap> {
+        let mut map = NormalMap::zeroed(inputs.base.size(), options.format);
+        self.blend_into(inputs, options, map.codes_mut())?;
+        Ok(map)
+    }
+
+    /// Blends two normal maps into the caller's memory: codes texel by texel, in rows from the top. Tells how it ran.
+    ///
+    /// # Errors
+    /// As [`Baker::blend`], and [`crate::Error::Parameter`] if `codes` is not of the format's depth and the base's
+    /// size.
+    pub fn blend_into(
+        &self,
+        inputs: &BlendInputs<&NormalMap, &HeightMap>,
+        options: &BlendOptions,
+        mut codes: CodesMut<'_>,
+    ) -> Result<Blended> {
         let BlendInputs { base, detail, mask } = *inputs;
         let size = base.size();
-        let formats = [base.format(), detail.format()];
-        let plan = BlendPlan::new(options, size, formats, mask.map(HeightMap::height_type))?;
+        let plan = BlendPlan::new(options, size, [base.format(), detail.format()], mask.map(HeightMap::height_type))?;
+        plan.format.texel().check_codes(size, codes.len(), codes.depth())?;
         for map in [base, detail] {
             check_components(map.codes(), map.format(), map.size().width(), 0)?;
         }
@@ -44,14 +60,13 @@ impl Baker {
         let mask = mask.map(mask_codes);
         let mut layers = vec![base.codes(), tiled.as_ref().unwrap_or(detail).codes()];
         layers.extend(mask.as_ref().map(|mask| mask.as_ref()));
-        let mut map = NormalMap::zeroed(size, options.format);
-        self.run(|backend| {
+        let (ran, ()) = self.run(|backend| {
             let band_rows = backend.map_band_rows(RowBytes::of_blend(&plan));
             let mut bands = MapLayers::new(layers.clone(), size.height(), band_rows);
-            backend.blend(&plan, &mut bands, &mut whole_sink(&mut map.codes_mut(), plan.format.texel(), size))?;
+            backend.blend(&plan, &mut bands, &mut whole_sink(&mut codes, plan.format.texel(), size))?;
             Ok((size, ()))
         })?;
-        Ok(map)
+        Ok(Blended { ran, weights: plan.used_weights() })
     }
 
     /// Blends rows from `open` into rows for `create` while they are read and written; a map that tiles is held.
@@ -84,8 +99,7 @@ impl Baker {
             write_watched(sinks, &[plan.format.texel()], size, RowOrder::FromTop, monitor, |sinks| {
                 backend.blend(&plan, &mut LayerReader::new(layers, size.height(), band_rows)?, sinks[0])
             })?;
-            let is_weighted = matches!(plan.method, BlendMethod::Weighted { .. });
-            Ok((size, is_weighted.then_some(plan.weights)))
+            Ok((size, plan.used_weights()))
         })?;
         Ok(Blended { ran, weights })
     }

@@ -107,5 +107,5 @@ fn sinks_must_be_those_of_the_maps() {
     let open = || Ok(Box::new(MemorySource::new(map.clone())) as HeightRows);
     let create = |_: Size| Ok(Maps { normal: None, parallax: None });
     let error = Baker::cpu().bake_rows(&open, &create, &both(), &Monitor::default()).expect_err("no sinks");
-    assert_eq!(error.to_string(), "maps is other sinks: it must be a sink for each map that the options ask for");
+    assert_eq!(error.to_string(), "maps is others: it must be those that the options ask for");
 }

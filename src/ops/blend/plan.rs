@@ -61,6 +61,11 @@ impl BlendPlan {
         Ok(Self { size, inputs, layers, mask, method, weights, format, precision })
     }
 
+    /// The weights, of the method that has some.
+    pub fn used_weights(&self) -> Option<Weights> {
+        matches!(self.method, BlendMethod::Weighted { .. }).then_some(self.weights)
+    }
+
     /// The greatest components L1 and L2 if both maps hold integers: then the blend is correctly rounded.
     pub fn integer_scales(&self) -> Option<[i32; 2]> {
         let [base, detail] = self.layers.map(|layer| layer.codes.map(|codes| codes.greatest));
