@@ -40,7 +40,7 @@ pub enum Error {
     /// A component of a float normal map is NaN, infinite or beyond 65536: it belongs to no direction.
     #[error(
         "the normal at column {x}, row {y} has a component of {value}: components must be between -65536 and 65536; \
-         texbake check --repair makes such texels flat"
+         texbake check --repair -o FILE makes such texels flat"
     )]
     NoDirection {
         /// Column of the texel, from 0 on the left.
@@ -60,7 +60,7 @@ pub enum Error {
         source: std::io::Error,
     },
 
-    /// A file was read, but it holds no height map that can be used as it was asked.
+    /// A file was read, but it holds no map that can be used as it was asked.
     #[error("{}: {reason}; {remedy}", path.display())]
     File {
         /// The file.
@@ -105,7 +105,7 @@ pub enum Error {
         reason: String,
     },
 
-    /// The bake was stopped from outside.
+    /// The job was stopped from outside.
     #[error("stopped before it was complete; no file was left under its final name")]
     Cancelled,
 }

@@ -9,7 +9,7 @@ use crate::map::{CodesMut, HeightMap, NormalMap, Size};
 use crate::ops::blend::{BlendInputs, BlendOptions, BlendPlan};
 use crate::stream::{
     HeightRows, LayerReader, LayerSource, MapLayers, MaskLayer, Monitor, NormalLayer, NormalRows, RowOrder, RowsOut,
-    Tiled, check_components, mask_codes, read_normals,
+    Tiled, check_components, mask_codes, read_normals, read_normals_watched,
 };
 
 /// How a blend ran.
@@ -52,13 +52,14 @@ impl Baker {
         let size = base.size();
         let plan = BlendPlan::new(options, size, [base.format(), detail.format()], mask.map(HeightMap::height_type))?;
         plan.format.texel().check_codes(size, codes.len(), codes.depth())?;
-        for map in [base, detail] {
-            check_components(map.codes(), map.format(), map.size().width(), 0)?;
-        }
         check_layer_sizes(size, detail.size(), mask.map(HeightMap::size), options)?;
         let tiled = if detail.size() == size { None } else { Some(tiled(detail.clone(), size)?) };
+        let detail = tiled.as_ref().unwrap_or(detail);
+        for map in [base, detail] {
+            check_components(map.codes(), map.format(), size.width(), 0)?;
+        }
         let mask = mask.map(mask_codes);
-        let mut layers = vec![base.codes(), tiled.as_ref().unwrap_or(detail).codes()];
+        let mut layers = vec![base.codes(), detail.codes()];
         layers.extend(mask.as_ref().map(|mask| mask.as_ref()));
         let (ran, ()) = self.run(|backend| {
             let band_rows = backend.map_band_rows(RowBytes::of_blend(&plan));
@@ -87,7 +88,7 @@ impl Baker {
             let plan = BlendPlan::new(options, size, [base.format(), detail.format()], mask_type)?;
             check_layer_sizes(size, detail.size(), mask.as_ref().map(|mask| mask.size()), options)?;
             if detail.size() != size {
-                detail = Box::new(Tiled::new(read_normals(detail.as_mut())?, size));
+                detail = Box::new(Tiled::new(read_normals_watched(detail.as_mut(), monitor)?, size));
             }
             let sinks = vec![create(size)?];
             let mut layers: Vec<Box<dyn LayerSource>> =

@@ -47,7 +47,8 @@ impl Baker {
         &self,
         open: &dyn Fn() -> Result<(HeightRows, NormalRows)>,
         create: &dyn Fn(Size) -> Result<RowsOut>,
-        (format, precision): (ParallaxFormat, Precision),
+        format: ParallaxFormat,
+        precision: Precision,
         monitor: &Monitor,
     ) -> Result<Ran> {
         let (ran, ()) = self.run(|backend| {
@@ -57,7 +58,7 @@ impl Baker {
             let sinks = vec![create(plan.size)?];
             let band_rows = backend.band_rows(RowBytes::of_parallax(&plan));
             let layers: Vec<Box<dyn LayerSource>> =
-                vec![Box::new(HeightLayer(heights)), Box::new(NormalLayer::new(normals))];
+                vec![Box::new(HeightLayer::new(heights)), Box::new(NormalLayer::new(normals))];
             write_watched(sinks, &[format.texel()], plan.size, RowOrder::FromTop, monitor, |sinks| {
                 backend.parallax(&plan, &mut LayerReader::new(layers, plan.size.height(), band_rows)?, sinks[0])
             })?;

@@ -139,10 +139,12 @@ impl Job {
             Ok((rows, normals.open()?))
         };
         let create = |size| {
+            // A scale out of range is told before there is a file.
+            self.options.scale.resolve(size)?;
             let Maps { parallax, .. } = self.create(size)?;
             parallax.ok_or_else(|| Error::parameter("maps", "none", "parallax"))
         };
-        let ran = self.baker.parallax_with_normals_rows(&open, &create, (format, self.options.precision), monitor);
+        let ran = self.baker.parallax_with_normals_rows(&open, &create, format, self.options.precision, monitor);
         warnings.extend(heights.warnings(ran.is_ok()));
         warnings.extend(normals.warnings(ran.is_ok()).into_iter().map(|text| format!("the normal map {text}")));
         let ran = ran?;

@@ -5,7 +5,7 @@ use crate::names::named;
 /// Exact bytes, or speed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Precision {
-    /// The same bytes on every backend; for integer heights the correctly rounded ones.
+    /// The same bytes on every backend; where all inputs hold integer codes the correctly rounded ones.
     #[default]
     Exact,
     /// Native floats. Measured by `cargo bench --bench accuracy`, with directions off by 1e-5 degrees at most:

@@ -42,10 +42,10 @@ pub(crate) trait LayerSource: Send {
 /// Bands of maps in memory.
 pub(crate) struct MapLayers<'a> {
     /// All codes of each map.
-    pub layers: Vec<CodesRef<'a>>,
+    layers: Vec<CodesRef<'a>>,
     /// Rows of each map.
-    pub height: usize,
-    pub band_rows: usize,
+    height: usize,
+    band_rows: usize,
     next_row: usize,
 }
 

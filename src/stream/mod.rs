@@ -21,6 +21,7 @@ pub(crate) use band::{Band, HeightBand, HeightBands};
 pub(crate) use layers::{LayerBand, LayerBands, LayerReader, LayerSource, MapLayers};
 pub(crate) use memory::{MapBands, MapSink};
 pub use monitor::Monitor;
+pub(crate) use normals::read_normals_watched;
 pub(crate) use normals::{HeightLayer, MaskLayer, NormalLayer, Tiled, check_components, height_codes, mask_codes};
 pub use normals::{NormalSource, read_normals};
 pub(crate) use order::RowOrder;

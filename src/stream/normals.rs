@@ -1,6 +1,7 @@
 //! Normal maps, masks and heights as layers.
 
 use super::layers::LayerSource;
+use super::monitor::Monitor;
 use super::reader::RowSource;
 use crate::error::{Error, Result};
 use crate::map::{Codes, CodesMut, CodesRef, Depth, HeightMap, HeightType, Heights, HeightsMut, NormalFormat};
@@ -41,8 +42,23 @@ impl NormalSource for Box<dyn NormalSource> {
 /// # Errors
 /// As [`NormalSource::read`].
 pub fn read_normals(source: &mut dyn NormalSource) -> Result<NormalMap> {
+    read_normals_watched(source, &Monitor::default())
+}
+
+/// Rows of a map that are read between two looks at the monitor.
+const PIECE_ROWS: usize = 64;
+
+/// Reads a whole normal map, unless the monitor ends it.
+///
+/// # Errors
+/// As [`NormalSource::read`], and [`Error::Cancelled`].
+pub(crate) fn read_normals_watched(source: &mut dyn NormalSource, monitor: &Monitor) -> Result<NormalMap> {
     let mut map = NormalMap::zeroed(source.size(), source.format());
-    source.read(map.codes_mut())?;
+    let row_codes = source.format().texel().row_codes(source.size().width());
+    for piece in map.codes_mut().chunks(PIECE_ROWS * row_codes) {
+        monitor.check()?;
+        source.read(piece)?;
+    }
     Ok(map)
 }
 
@@ -141,11 +157,20 @@ pub(crate) fn check_components(
 }
 
 /// The heights of a source as a layer.
-pub(crate) struct HeightLayer(pub Box<dyn RowSource>);
+pub(crate) struct HeightLayer {
+    source: Box<dyn RowSource>,
+    next_row: usize,
+}
+
+impl HeightLayer {
+    pub fn new(source: Box<dyn RowSource>) -> Self {
+        Self { source, next_row: 0 }
+    }
+}
 
 impl LayerSource for HeightLayer {
     fn depth(&self) -> Depth {
-        match self.0.height_type() {
+        match self.source.height_type() {
             HeightType::U8 => Depth::Bits8,
             HeightType::U16 => Depth::Bits16,
             HeightType::F32 => Depth::Float32,
@@ -153,16 +178,22 @@ impl LayerSource for HeightLayer {
     }
 
     fn row_codes(&self) -> usize {
-        self.0.size().width()
+        self.source.size().width()
     }
 
     fn read(&mut self, rows: CodesMut<'_>) -> Result<()> {
-        self.0.read(match rows {
-            CodesMut::U8(rows) => HeightsMut::U8(rows),
-            CodesMut::U16(rows) => HeightsMut::U16(rows),
-            CodesMut::F32(rows) => HeightsMut::F32(rows),
+        match rows {
+            CodesMut::U8(rows) => self.source.read(HeightsMut::U8(rows)),
+            CodesMut::U16(rows) => self.source.read(HeightsMut::U16(rows)),
+            CodesMut::F32(rows) => {
+                self.source.read(HeightsMut::F32(rows))?;
+                let width = self.source.size().width();
+                Heights::F32(rows).check_finite(width, self.next_row)?;
+                self.next_row += rows.len() / width;
+                Ok(())
+            }
             CodesMut::F16(_) => unreachable!("no height is a half"),
-        })
+        }
     }
 }
 
@@ -171,12 +202,13 @@ pub(crate) struct MaskLayer {
     source: Box<dyn RowSource>,
     /// A row of floats.
     floats: Vec<f32>,
+    next_row: usize,
 }
 
 impl MaskLayer {
     pub fn new(source: Box<dyn RowSource>) -> Self {
         let floats = if source.height_type() == HeightType::F32 { source.size().width() } else { 0 };
-        Self { floats: vec![0.0; floats], source }
+        Self { floats: vec![0.0; floats], source, next_row: 0 }
     }
 }
 
@@ -196,6 +228,8 @@ impl LayerSource for MaskLayer {
             CodesMut::U16(rows) => {
                 for row in rows.chunks_exact_mut(self.floats.len()) {
                     self.source.read(HeightsMut::F32(&mut self.floats))?;
+                    Heights::F32(&self.floats).check_finite(self.floats.len(), self.next_row)?;
+                    self.next_row += 1;
                     row.iter_mut().zip(&self.floats).for_each(|(code, t)| *code = transition_code(*t));
                 }
                 Ok(())

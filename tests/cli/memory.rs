@@ -28,13 +28,21 @@ fn peak_bytes(child: &mut Child) -> u64 {
 }
 
 fn assert_does_not_grow(folder: &Folder, input: impl Fn(usize) -> (String, Vec<String>), output: &str) {
-    let peaks = HEIGHTS.map(|height| {
+    assert_peaks_are_alike(folder, |height| {
         let (input, arguments) = input(height);
-        let mut command = folder.command(&["normal", &input, "-o", output, "--backend", "cpu", "-q"]);
-        peak_bytes(&mut command.args(arguments).stderr(Stdio::inherit()).spawn().unwrap())
+        let command = ["normal", &input, "-o", output].map(str::to_owned).to_vec();
+        [command, arguments].concat()
+    });
+}
+
+fn assert_peaks_are_alike(folder: &Folder, arguments: impl Fn(usize) -> Vec<String>) {
+    let peaks = HEIGHTS.map(|height| {
+        let mut command = folder.command(&[]);
+        command.args(arguments(height)).args(["--backend", "cpu", "-q"]);
+        peak_bytes(&mut command.stderr(Stdio::inherit()).spawn().unwrap())
     });
     assert!(peaks[0] > 1 << 20, "{peaks:?}");
-    assert!(peaks[1] < peaks[0] + MOST_GROWTH, "{output}: {peaks:?} bytes for {HEIGHTS:?} rows");
+    assert!(peaks[1] < peaks[0] + MOST_GROWTH, "{:?}: {peaks:?} bytes for {HEIGHTS:?} rows", arguments(HEIGHTS[1]));
 }
 
 #[test]
@@ -54,4 +62,22 @@ fn a_taller_map_needs_no_more_memory() {
     assert_does_not_grow(&folder, raw, "n.tif");
     assert_does_not_grow(&folder, raw, "n.exr");
     assert_does_not_grow(&folder, grey, "n.png");
+}
+
+#[test]
+fn taller_blends_and_fused_bakes_need_no_more_memory() {
+    let folder = Folder::new();
+    for height in HEIGHTS {
+        let grey = vec![0; WIDTH * height];
+        folder.file(
+            &format!("{height}_h.png"),
+            png(WIDTH, height, png::ColorType::Grayscale, png::BitDepth::Eight, &grey),
+        );
+        let flat = [128, 128, 255].repeat(WIDTH * height);
+        folder.file(&format!("{height}_n.png"), png(WIDTH, height, png::ColorType::Rgb, png::BitDepth::Eight, &flat));
+    }
+    let words = |text: String| text.split(' ').map(str::to_owned).collect::<Vec<_>>();
+    assert_peaks_are_alike(&folder, |h| words(format!("bake {h}_h.png --out baked --maps normal,parallax")));
+    assert_peaks_are_alike(&folder, |h| words(format!("parallax {h}_h.png --normal {h}_n.png -o p.png")));
+    assert_peaks_are_alike(&folder, |h| words(format!("blend {h}_n.png {h}_n.png --mask {h}_h.png -o b.png")));
 }

@@ -21,28 +21,17 @@ pub(super) fn blend(plan: &BlendPlan, layers: &[CodesRef<'_>], codes: CodesMut<'
     let readings = [base, detail];
     match Arithmetic::new(plan.precision, [format].into_iter()) {
         Arithmetic::Fast => fill_integers::<f32>(plan, readings, layers, texels, written(format, codes)),
-        Arithmetic::Near if greatest_part(plan, readings) < 1 << 24 => {
+        Arithmetic::Near if fits_f32(plan, readings) => {
             fill_integers::<f32>(plan, readings, layers, texels, f32::proved(format, codes));
         }
         _ => fill_integers::<f64>(plan, readings, layers, texels, f64::proved(format, codes)),
     }
 }
 
-/// A bound on the parts of a blended normal and on all that they are computed from; floats hold integers up to 2^24
-/// (f32) and 2^53 (f64) as they are, and every blend stays below the latter.
-fn greatest_part(plan: &BlendPlan, readings: [CodeReading; 2]) -> i64 {
-    let [l1, l2] = readings.map(|reading| i64::from(reading.greatest));
-    let [a, b, q] = match plan.mask {
-        // M - H and H, which sum to M.
-        Some(mask) => [mask.greatest.into(), 0, mask.greatest.into()],
-        None => [plan.weights.base.into(), plan.weights.detail.into(), i64::from(plan.weights.q)],
-    };
-    match plan.method {
-        BlendMethod::Weighted { .. } | BlendMethod::Masked => (a.abs() + b.abs()).max(q) * l1 * l2,
-        // t_z is at most 2 l1, t.u then 4 l1 l2.
-        BlendMethod::Rnm => 6 * l1 * l1 * l2,
-        BlendMethod::Linear | BlendMethod::Overlay | BlendMethod::Udn | BlendMethod::Whiteout => 2 * l1 * l2,
-    }
+/// Whether f32 holds every part of a blended normal, and all that it is computed from, as it is; f64 always does.
+fn fits_f32(plan: &BlendPlan, readings: [CodeReading; 2]) -> bool {
+    let parts = plan.greatest_parts(readings.map(|reading| reading.greatest));
+    parts.iter().all(|part| *part < 1 << f32::MANTISSA_DIGITS)
 }
 
 /// The numerators of both weights of a texel, and their denominator.

@@ -10,7 +10,7 @@ pub(super) fn nearest_f16_of_f32(value: f32) -> f16 {
     let bits = value.to_bits();
     let (sign, magnitude) = ((bits >> 16) as u16 & 0x8000, bits & 0x7fff_ffff);
     // Adds just under half of the last place kept, or exactly half if that place is odd.
-    let normal = (magnitude.wrapping_sub(REBIAS) + 0xfff + ((magnitude >> 13) & 1)) >> 13;
+    let normal = magnitude.wrapping_sub(REBIAS).wrapping_add(0xfff + ((magnitude >> 13) & 1)) >> 13;
     // Next to 0.5 a float's last place is 2^-24, a subnormal f16's only one: the addition rounds.
     let subnormal = (f32::from_bits(magnitude) + 0.5).to_bits() - 0.5f32.to_bits();
     let rounded = if magnitude < LEAST_NORMAL { subnormal } else { normal };
@@ -41,6 +41,11 @@ mod tests {
                     assert_eq!(nearest_f16_of_f32(value).to_bits(), f16::from_f32(value).to_bits(), "{value:e}");
                 }
             }
+        }
+        // Below the rebias, what is not used wraps.
+        for below in 0..=4097 {
+            let value = f32::from_bits(2f32.powi(-15).to_bits() - below);
+            assert_eq!(nearest_f16_of_f32(value).to_bits(), f16::from_f32(value).to_bits(), "{value:e}");
         }
         for value in [0.0, -0.0, f32::from_bits(1), -f32::MIN_POSITIVE] {
             assert_eq!(nearest_f16_of_f32(value).to_bits(), f16::from_f32(value).to_bits(), "{value:e}");

@@ -128,7 +128,7 @@ pub(super) fn s_bits(plan: &BlendPlan) -> u32 {
     let (Some(scales), Some(rounding)) = (plan.integer_scales(), CodeRounding::new(plan.format.texel())) else {
         return 128;
     };
-    let [leaning, z] = greatest_parts(plan, scales.map(|l| l as u128));
+    let [leaning, z] = plan.greatest_parts(scales);
     let s = 2 * leaning.pow(2) + z.pow(2);
     // The reoriented sum is always one of 64-bit numbers.
     let is_narrow = plan.method != BlendMethod::Rnm && (rounding.m as u128).pow(2) * s < 1 << 64;
@@ -136,22 +136,5 @@ pub(super) fn s_bits(plan: &BlendPlan) -> u32 {
         _ if is_narrow => 64,
         ..0x1_0000_0000_0000_0000_0000_0000 => 96,
         _ => 128,
-    }
-}
-
-/// The greatest magnitudes of X or Y and of Z, and of every product on the way there (`blend_integers`).
-pub(super) fn greatest_parts(plan: &BlendPlan, [l1, l2]: [u128; 2]) -> [u128; 2] {
-    let parts = |leaning, z| [leaning * l1 * l2, z * l1 * l2];
-    match (plan.method, plan.mask) {
-        (BlendMethod::Masked, Some(mask)) => parts(mask.greatest.into(), mask.greatest.into()),
-        (BlendMethod::Weighted { .. } | BlendMethod::Masked, _) => {
-            let weights = plan.weights;
-            let sum = weights.base.unsigned_abs() + weights.detail.unsigned_abs();
-            parts(sum.into(), weights.q.into())
-        }
-        (BlendMethod::Linear, _) => parts(2, 2),
-        (BlendMethod::Overlay, _) => parts(1, 1),
-        (BlendMethod::Udn | BlendMethod::Whiteout, _) => parts(2, 1),
-        (BlendMethod::Rnm, _) => parts(6 * l1, 6 * l1),
     }
 }

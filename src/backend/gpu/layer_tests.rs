@@ -1,6 +1,6 @@
 //! Operations on several maps: the limits that choose their arithmetic, and sabotage that must be caught.
 
-use super::blend::{greatest_parts, s_bits};
+use super::blend::s_bits;
 use super::device::Device;
 use super::kernel::Kernel;
 use super::layers::{LayerOperation, accept, compare};
@@ -79,7 +79,7 @@ fn no_sum_is_beyond_its_limit() {
         for formats in [[UNORM8; 3], [SNORM8, UNORM16, UNORM8], [UNORM16; 3]] {
             let plan = blend(method, formats, mask);
             let [l1, l2] = plan.integer_scales().unwrap();
-            let [leaning, z] = greatest_parts(&plan, [l1 as u128, l2 as u128]);
+            let [leaning, z] = plan.greatest_parts([l1, l2]);
             let extremes = |l: i32| {
                 let components = move || [-l, -l / 2, 0, l];
                 let xy = components().into_iter().flat_map(move |x| components().map(|y| [x, y]));

@@ -103,6 +103,7 @@ impl IntegerSlope {
     /// n_z (2h - 1) times sqrt(S): Z (2H - M) / M, which is an integer where a parallax map is baked (DESIGN 3.1).
     #[inline(always)]
     pub(crate) fn parallax(&self, height: i32, greatest: i32) -> i64 {
+        debug_assert!(self.z % i64::from(greatest) == 0, "the plan has a parallax map");
         self.z / i64::from(greatest) * i64::from(2 * height - greatest)
     }
 }

@@ -23,8 +23,8 @@ pub struct BlendInputs<N, H> {
     pub base: N,
     /// The second normal map, of the same size, or any size with [`BlendOptions::tile`].
     pub detail: N,
-    /// The transition t of each texel, for [`BlendMethod::Masked`]: t = H / (2^B - 1) as of heights; a float t is
-    /// rounded to 16 bits first. Of the size of `base`.
+    /// The transition t of each texel, for [`BlendMethod::Masked`]: t = H / (2^B - 1) as of heights; a float t
+    /// below 0 or above 1 counts as 0 or 1, and is rounded to 16 bits. Of the size of `base`.
     pub mask: Option<H>,
 }
 
@@ -83,11 +83,11 @@ impl BlendMethod {
     /// # Errors
     /// [`crate::Error::Parameter`] if t is below 0 or above 1.
     pub fn transition(t: Rational) -> crate::Result<Self> {
-        let rest = t.denominator() - t.numerator();
-        if t.numerator() < 0 || rest < 0 {
+        if t.numerator() < 0 || t.numerator() > t.denominator() {
             return Err(crate::Error::parameter("transition", t, "between 0 and 1"));
         }
-        Ok(Self::Weighted { base: Rational::new(rest, t.denominator())?, detail: t })
+        let base = Rational::new(t.denominator() - t.numerator(), t.denominator())?;
+        Ok(Self::Weighted { base, detail: t })
     }
 }
 

@@ -71,4 +71,23 @@ impl BlendPlan {
         let [base, detail] = self.layers.map(|layer| layer.codes.map(|codes| codes.greatest));
         Some([base?, detail?])
     }
+
+    /// The greatest magnitudes of X or Y and of Z, and of every product on the way there (`blend_integers`), for
+    /// normals over L1 and L2. All are below 2^53: the largest are those of two reoriented 16-bit maps, 6 L1^2 L2.
+    pub fn greatest_parts(&self, scales: [i32; 2]) -> [u128; 2] {
+        let [l1, l2] = scales.map(|l| l as u128);
+        let parts = |leaning, z| [leaning * l1 * l2, z * l1 * l2];
+        match (self.method, self.mask) {
+            (BlendMethod::Masked, Some(mask)) => parts(mask.greatest.into(), mask.greatest.into()),
+            (BlendMethod::Weighted { .. } | BlendMethod::Masked, _) => {
+                let weights = self.weights;
+                let sum = weights.base.unsigned_abs() + weights.detail.unsigned_abs();
+                parts(sum.into(), weights.q.into())
+            }
+            (BlendMethod::Linear, _) => parts(2, 2),
+            (BlendMethod::Overlay, _) => parts(1, 1),
+            (BlendMethod::Udn | BlendMethod::Whiteout, _) => parts(2, 1),
+            (BlendMethod::Rnm, _) => parts(6 * l1, 6 * l1),
+        }
+    }
 }
