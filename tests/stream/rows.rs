@@ -260,9 +260,9 @@ fn a_cancelled_bake_ends_and_nothing_is_finished() {
 }
 
 /// A source of floats of which one is NaN, and which does not say so.
-struct Careless {
-    source: MemorySource,
-    hole: [usize; 2],
+pub struct Careless {
+    pub source: MemorySource,
+    pub hole: [usize; 2],
 }
 
 impl Careless {

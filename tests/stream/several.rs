@@ -1,11 +1,14 @@
 //! Bakes from rows to the rows of several maps.
 
-use super::rows::MemorySource;
-use crate::support::{UNORM8, map_u8};
+use super::rows::{Careless, MemorySource};
+use crate::support::{UNORM8, map_f32, map_u8};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
-use texbake::stream::{HeightRows, Monitor, RowSink, RowsOut};
-use texbake::{BakeOptions, Baker, CodesRef, Edge, Edges, Error, HeightMap, Maps, ParallaxFormat, Result, Size};
+use texbake::stream::{HeightRows, Monitor, NormalRows, NormalSource, RowSink, RowsOut};
+use texbake::{
+    BakeOptions, Baker, BlendInputs, BlendMethod, BlendOptions, CodesMut, CodesRef, Edge, Edges, Error, HeightMap,
+    Maps, NormalFormat, ParallaxFormat, Precision, Result, Size,
+};
 
 /// A file of many: it tells whether it got its name.
 struct Sink {
@@ -108,4 +111,48 @@ fn sinks_must_be_those_of_the_maps() {
     let create = |_: Size| Ok(Maps { normal: None, parallax: None });
     let error = Baker::cpu().bake_rows(&open, &create, &both(), &Monitor::default()).expect_err("no sinks");
     assert_eq!(error.to_string(), "maps is others: it must be those that the options ask for");
+}
+
+/// A normal map in memory, read row by row.
+struct Flat(Size);
+
+impl NormalSource for Flat {
+    fn size(&self) -> Size {
+        self.0
+    }
+
+    fn format(&self) -> NormalFormat {
+        UNORM8
+    }
+
+    fn read(&mut self, rows: CodesMut<'_>) -> Result<()> {
+        let CodesMut::U8(rows) = rows else { panic!("8 bits") };
+        rows.chunks_exact_mut(3).for_each(|texel| texel.copy_from_slice(&[128, 128, 255]));
+        Ok(())
+    }
+}
+
+#[test]
+fn a_mask_or_height_that_is_not_finite_reaches_no_backend() {
+    let size = Size::new(70, 500).expect("a size");
+    for row in [0, 250, 499] {
+        let floats = || {
+            let source = MemorySource::new(map_f32(70, 500, |_, _| 0.5));
+            Box::new(Careless { source, hole: [3, row] }) as HeightRows
+        };
+        let flat = || Box::new(Flat(size)) as NormalRows;
+        let create = |_: Size| {
+            let (bytes, named) = (Arc::default(), Arc::default());
+            Ok(Box::new(Sink { bytes, named, row_codes: 1, cannot_write: None, cannot_complete: true }) as RowsOut)
+        };
+        let inputs = || Ok(BlendInputs { base: flat(), detail: flat(), mask: Some(floats()) });
+        let options = BlendOptions { method: BlendMethod::Masked, ..Default::default() };
+        let blended = Baker::cpu().blend_rows(&inputs, &create, &options, &Monitor::default()).map(drop);
+        let maps = || Ok((floats(), flat()));
+        let (format, exact, monitor) = (ParallaxFormat::default(), Precision::Exact, Monitor::default());
+        let baked = Baker::cpu().parallax_with_normals_rows(&maps, &create, format, exact, &monitor).map(drop);
+        for ran in [blended, baked] {
+            assert!(matches!(ran, Err(Error::NotFinite { x: 3, y, .. }) if y == row), "row {row}: {ran:?}");
+        }
+    }
 }
