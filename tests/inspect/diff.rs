@@ -66,6 +66,8 @@ fn one_code_apart_is_found_where_it_is() {
     assert!((found.mean - (a + b) / 5000.0).abs() < 1e-9, "{}", found.mean);
     assert_eq!(found.percentile_99, 0.0);
     assert!(found.exceeds(0.0) && found.exceeds(1.12) && !found.exceeds(1.13));
+    let above = |tolerance| difference_above(&map, &other, tolerance).above_tolerance;
+    assert_eq!([above(0.0), above(0.67), above(0.68), above(1.13)], [2, 2, 1, 0]);
 }
 
 #[test]
@@ -142,6 +144,7 @@ fn what_has_no_direction_has_no_angle_and_differs() {
     );
     let found = difference(&map, &broken);
     assert_eq!((found.no_angle, found.differing, found.largest), (3, 3, Some((0.0, texel(0, 0)))));
+    assert_eq!(found.above_tolerance, 0);
     assert!(found.exceeds(180.0));
     // NaN is equal to nothing; the others are to themselves.
     let same = difference(&broken, &broken);
@@ -196,4 +199,18 @@ impl RowSink for Nowhere {
     fn finish(self: Box<Self>) -> Result<()> {
         panic!("nothing was to be painted")
     }
+}
+
+#[test]
+fn a_cancelled_monitor_ends_every_pass() {
+    let map = flat(16, 16, UNORM8);
+    let monitor = Monitor::default();
+    monitor.cancel();
+    let pair = || [map.clone(), map.clone()].map(NormalMap::into_rows);
+    let [a, b] = pair();
+    assert!(matches!(Difference::between(a, b, 0.0, &monitor), Err(texbake::Error::Cancelled)));
+    assert!(matches!(heatmap(pair(), 1.0, Box::new(Nowhere), &monitor), Err(texbake::Error::Cancelled)));
+    let options = texbake::inspect::CheckOptions::default();
+    let checked = texbake::inspect::check(map.clone().into_rows(), &options, &monitor);
+    assert!(matches!(checked, Err(texbake::Error::Cancelled)));
 }
