@@ -255,13 +255,13 @@ fn mend(
     };
     let repaired = repair(&Baker::cpu(), &open, &create, format, monitor).map_err(of_output)?;
     say(format_args!(
-        "{}: repaired to {} {} {} {}; made flat: {} texels of NaN, infinity or beyond 65536, {} of (0, 0, 0)",
+        "{}: repaired to {} {} {} {}; made flat: {} of NaN, infinity or beyond 65536, {} of (0, 0, 0)",
         output.display(),
         format.encoding,
         format.depth,
         format.channels,
         format.convention,
-        repaired.flattened,
+        texels(repaired.flattened),
         repaired.zero_vectors,
     ));
     Ok(format)
@@ -369,6 +369,11 @@ fn json_of(path: &Path, result: &Result<Findings>) -> Value {
 
 fn count(tally: Tally) -> Value {
     json!({ "count": tally.count, "first": tally.first.map(place) })
+}
+
+/// `1 texel`, `2 texels`.
+pub fn texels(count: u64) -> String {
+    if count == 1 { "1 texel".into() } else { format!("{count} texels") }
 }
 
 /// Column and row.

@@ -1,6 +1,6 @@
 //! `texbake diff`: how two normal maps differ.
 
-use super::check::{create_folder_of, is_same_file, place};
+use super::check::{create_folder_of, is_same_file, place, texels};
 use super::exit::{Exit, Failure};
 use super::interruptible;
 use super::print::{put, say};
@@ -127,7 +127,7 @@ fn warn_of_misreading(path: &Path, read: &NormalReadOptions, census: &Census) {
         Misreading::UnormFloats => read.encoding.is_some(),
     };
     if !is_said {
-        say(format_args!("warning: {}: {misreading} {}", path.display(), misreading.remedy()));
+        say(format_args!("warning: {}: {misreading}; {}", path.display(), misreading.remedy()));
     }
 }
 
@@ -192,7 +192,7 @@ fn lines(arguments: &DiffArguments, difference: &Difference) -> String {
     let above = match arguments.tolerance {
         0.0 => None,
         degrees => {
-            Some(format!("{above_tolerance} texels ({:.4}%) above {degrees} degrees", percent(*above_tolerance)))
+            Some(format!("{} ({:.4}%) above {degrees} degrees", texels(*above_tolerance), percent(*above_tolerance)))
         }
     };
     let differing = format!("{differing} of {size} texels differ ({:.4}%)", percent(*differing));

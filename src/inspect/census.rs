@@ -321,7 +321,8 @@ impl Rule {
             }
         }
         let step = |reading: CodeReading| f64::from(reading.factor) / f64::from(reading.greatest);
-        let coarse = codes.map_or(COARSE_FLOATS, |reading| COARSE_STEPS * step(reading));
+        // A hair more: lengths are rounded roots.
+        let coarse = (1.0 + 1e-9) * codes.map_or(COARSE_FLOATS, |reading| COARSE_STEPS * step(reading));
         Self { size, format, codes, squares, coarse }
     }
 

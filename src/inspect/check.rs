@@ -350,12 +350,12 @@ fn seam_finding(seam: &Seam, name: &str, severity: Severity) -> Finding {
     }
 }
 
-/// What is the matter, as a question where there is no telling.
+/// What speaks for it.
 impl fmt::Display for Misreading {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::TwoChannels => "the third channel is no z, the same or below zero everywhere: x and y alone?",
-            Self::UnormFloats => "all values lie between 0 and 1: stored as unorm?",
+            Self::TwoChannels => "the third channel is no z, but the same or not above zero everywhere",
+            Self::UnormFloats => "all values lie between 0 and 1, as if stored as unorm",
         })
     }
 }

@@ -87,12 +87,12 @@ fn floats_from_0_to_1_are_guessed_and_can_be_read() {
     let stored = texbake::NormalMap::new(signed.size(), signed.format(), texbake::Codes::F32(stored)).unwrap();
     stored.write(folder.path("blender.exr")).unwrap();
     let run = folder.run(&["check", "blender.exr"]).ends(1);
-    assert!(run.stdout.contains("stored as unorm?; read it with --encoding unorm\n"), "{}", run.stdout);
+    assert!(run.stdout.contains("as if stored as unorm; read it with --encoding unorm\n"), "{}", run.stdout);
     let run = folder.run(&["check", "blender.exr", "--repair", "-o", "n.exr"]).ends(1);
     run.says("error: blender.exr", &["--encoding unorm, or with --encoding float if it is as it should be"]);
     assert_eq!(folder.run(&["check", "blender.exr", "--encoding", "unorm"]).ends(0).stdout, "blender.exr: ok\n");
     let run = folder.run(&["diff", "signed.exr", "blender.exr", "--tolerance", "0.001"]).ends(1);
-    run.says("warning: blender.exr", &["stored as unorm? read it with --encoding unorm"]);
+    run.says("warning: blender.exr", &["as if stored as unorm; read it with --encoding unorm"]);
     let compare = ["diff", "signed.exr", "blender.exr", "--encoding", "float,unorm", "--tolerance", "0.001"];
     assert_eq!(folder.run(&compare).ends(0).stderr, "");
     // Blends and parallax maps read it so too.
@@ -250,7 +250,7 @@ fn floats_without_direction_are_made_flat() {
         "{}",
         run.stdout
     );
-    run.says("mended.exr: repaired", &["made flat: 1 texels of NaN, infinity or beyond 65536, 0 of (0, 0, 0)"]);
+    run.says("mended.exr: repaired", &["made flat: 1 texel of NaN, infinity or beyond 65536, 0 of (0, 0, 0)"]);
     let mended = texbake::NormalMap::read(folder.path("mended.exr")).unwrap();
     assert_eq!(mended.codes(), CodesRef::F32(&[0.0, 0.0, 1.0].repeat(16)));
 }

@@ -48,7 +48,7 @@ fn maps_that_differ_end_with_1_above_the_tolerance() {
         run.stdout.lines().nth(1).unwrap().to_owned()
     };
     assert_eq!(above("0.6", 1), "2 texels (1.0000%) above 0.6 degrees");
-    assert_eq!(above("44.99", 1), "1 texels (0.5000%) above 44.99 degrees");
+    assert_eq!(above("44.99", 1), "1 texel (0.5000%) above 44.99 degrees");
     assert_eq!(above("50", 0), "0 texels (0.0000%) above 50 degrees");
     folder.run(&["diff", "flat.png", "other.png", "--tolerance", "45"]).ends(0);
 }

@@ -121,6 +121,32 @@ fn an_interrupted_check_or_diff_leaves_nothing() {
     }
 }
 
+#[test]
+fn an_interrupt_while_the_repaired_map_is_checked_keeps_it() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("out")).unwrap();
+    // A machine that is done before the signal comes gets more to do.
+    for rows in [4096, 16384, 65535] {
+        sparse_tiff(&folder, "map.tif", 4096, rows);
+        let arguments = ["check", "map.tif", "--repair", "--channels", "xyz", "-o", "out/n.tif"];
+        let child = folder.command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        while folder.files("out") != ["n.tif"] {
+            std::thread::yield_now();
+        }
+        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        if [Some(0), Some(1)].contains(&output.status.code()) {
+            std::fs::remove_file(folder.path("out/n.tif")).unwrap();
+            continue;
+        }
+        let run = Run::from(output).ends(130);
+        assert!(!run.stdout.contains("\nout/n.tif: "), "{}", run.stdout);
+        assert_eq!(folder.files("out"), ["n.tif"]);
+        return;
+    }
+    panic!("no run was interrupted");
+}
+
 /// Whether a process catches SIGTERM, as Linux says; elsewhere after a while.
 fn listens(id: &str) -> bool {
     let Ok(status) = std::fs::read_to_string(format!("/proc/{id}/status")) else {

@@ -181,7 +181,7 @@ fn floats_from_0_to_1_are_found() {
         let finding = found.of(Problem::Misread).unwrap();
         assert_eq!(
             finding.to_string(),
-            "misread: all values lie between 0 and 1: stored as unorm?; read it with --encoding unorm"
+            "misread: all values lie between 0 and 1, as if stored as unorm; read it with --encoding unorm"
         );
         // One value beyond; flat; slopes along +x and +y alone.
         let beyond = planted(&stored, &[(texel(3, 3), [0.5, 0.5, 1.5])]);
