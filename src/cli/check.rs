@@ -271,6 +271,7 @@ fn mend(
 fn of_output(error: Error) -> Error {
     match error {
         Error::Parameter { parameter: "encoding", value, range } => {
+            let range = format!("{range} (see --output-bits too)");
             Error::Parameter { parameter: "output-encoding", value, range }
         }
         Error::Parameter { parameter: "bits", value, range } => {

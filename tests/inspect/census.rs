@@ -106,15 +106,14 @@ fn other_ways_to_round_are_a_note() {
     let truncate = |v: f64| ((v + 1.0) / 2.0 * 255.0).floor();
     let by_256 = |v: f64| ((v + 1.0) / 2.0 * 255.999).floor();
     let biased = |v: f64| (127.0 * v).round() + 128.0;
-    let cases: [(&str, &dyn Fn(f64) -> f64, bool); 3] =
-        [("truncated", &truncate, false), ("times 255.999", &by_256, false), ("biased", &biased, true)];
-    for (name, code, is_biased) in cases {
+    let ways: [&dyn Fn(f64) -> f64; 3] = [&truncate, &by_256, &biased];
+    for (code, name) in ways.into_iter().zip(["truncated", "times 255.999", "biased"]) {
         let codes = (0..64 * 64).flat_map(|i| dome(i % 64, i / 64).map(|v| code(v) as u8)).collect();
         let map = NormalMap::new(Size::new(64, 64).unwrap(), UNORM8, Codes::U8(codes)).unwrap();
         let found = findings(&map);
         let note = found.of(Problem::Rounding).unwrap_or_else(|| panic!("{name}: {:?}", found.list));
         assert_eq!((note.severity, found.census.non_unit), (Severity::Note, NONE), "{name}");
-        assert_eq!(note.remedy.contains("--encoding biased"), is_biased, "{name}: {note}");
+        assert_eq!(note.remedy.contains("--encoding biased"), name == "biased", "{name}: {note}");
         assert!((note.worst.unwrap() - 1.0).abs() > 3f64.sqrt() / 255.0, "{name}: {note}");
     }
 }
@@ -163,7 +162,7 @@ fn a_third_channel_that_is_no_z_is_found() {
         }
         // Nothing is said of what has two channels, nor of one length everywhere.
         assert_eq!(misreading(&sound(24, 24, xy(format))), None, "{format:?}");
-        let cone = |x: usize, y: usize| if (x + y) % 2 == 0 { [0.6, 0.0, 0.8] } else { [0.0, -0.6, 0.8] };
+        let cone = |x: usize, y: usize| if (x + y).is_multiple_of(2) { [0.6, 0.0, 0.8] } else { [0.0, -0.6, 0.8] };
         assert_eq!(misreading(&encoded(8, 8, format, cone)), None, "{format:?}");
     }
     // As steep as the encoding can tell, everywhere.
