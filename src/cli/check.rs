@@ -8,8 +8,9 @@ use clap::Args;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use texbake::inspect::{CheckOptions, Findings, Severity, Tally, Texel, check_file, repair};
+use texbake::inspect::{CheckOptions, Findings, Misreading, Severity, Tally, Texel, check_file, repair};
 use texbake::io::{NormalReadOptions, create_normals, open_normals};
+use texbake::stream::Monitor;
 use texbake::{Baker, Channels, Convention, Depth, Encoding, Error, NormalFormat, Result};
 
 /// Tell what is wrong with normal maps, and mend it
@@ -18,19 +19,27 @@ use texbake::{Baker, Channels, Convention, Depth, Encoding, Error, NormalFormat,
 Faults, each with its share, the worst texel and what to do:
   no-direction  floats that are NaN, infinite or beyond 65536
   zero-vector   (0, 0, 0)
-  non-unit      lengths that rounding a unit vector to the encoding cannot give
+  misread       a third channel that is no z, or floats that hold 0 to 1:
+                --repair refuses such maps until --channels or --encoding
+                says how to read them
+  non-unit      lengths that are off by more than three steps of the encoding
+                (2.4 % for 8 bits; 0.2 % for floats)
   below-zero    z below zero
-  green         green seems to point the other way: slopes of heights have no curl, and these have
-                much less of it with green turned around; no telling for flat maps, slopes along one
-                axis and what is not made of heights
+  green         green (or red) seems to point the other way: slopes of heights
+                have no curl, and these have much less of it with green turned
+                around; no telling for flat maps, slopes along one axis and
+                what is not made of heights
   srgb          the file says that it holds sRGB colours
   eight-bit     16 bits or floats that hold nothing but 8-bit values
-  banding       8 bits, most changes being single codes between plateaus of 8 texels or more
+  banding       8 bits, most changes being single codes between plateaus of
+                8 texels or more
 Notes, which are no faults:
+  rounding      lengths that are off by less: truncated or dithered codes
   at-zero       z of zero: as steep as the encoding can tell
-  file          what else its reader has to say, such as that a JPEG bends normals
-  seam          the edges do not fit where the map is repeated; a fault with --tiles; maps below
-                16 x 16 texels are not judged
+  file          what else its reader has to say, such as that a JPEG bends
+                normals
+  seam          the edges do not fit where the map is repeated; a fault with
+                --tiles; maps below 16 x 16 texels are not judged
 
 Examples:
   texbake check wall_normal.png
@@ -38,8 +47,9 @@ Examples:
   texbake check rock_normal.tif --encoding biased --convention dx
   texbake check resized_normal.png --repair -o repaired_normal.png
 
-Exit status: 0 no fault, 1 a fault or a file that cannot be read, 2 wrong arguments. \
-With --repair it is the repaired map that counts.")]
+Exit status: 0 no fault, 1 a fault or a file that cannot be read, 2 wrong
+arguments, 130 interrupted. With --repair it is the repaired map that counts,
+and what cannot be mended: eight-bit and banding in the input.")]
 pub struct CheckArguments {
     /// Normal maps: PNG, TIFF, EXR, TGA, BMP, JPEG or WebP
     #[arg(required = true, value_name = "FILE")]
@@ -63,7 +73,8 @@ pub struct CheckArguments {
 /// How normal maps are read.
 #[derive(Args, Debug)]
 pub struct ReadArguments {
-    /// How codes are read [default: unorm for unsigned integers, snorm for signed ones, float]
+    /// How codes are read; unorm also reads floats from 0 to 1 [default: unorm for unsigned integers, snorm for signed
+    /// ones, float]
     #[arg(long, value_parser = choice::<Encoding>(Encoding::NAMES), help_heading = INPUT)]
     pub encoding: Option<Encoding>,
 
@@ -87,7 +98,7 @@ pub struct RepairArguments {
     #[arg(long, requires = "output", help_heading = REPAIR)]
     pub repair: bool,
 
-    /// Repaired map: .png, .tif or .exr
+    /// Repaired map: .png, .tif or .exr; missing folders are made
     #[arg(short, long, value_name = "FILE", requires = "repair", help_heading = REPAIR)]
     pub output: Option<PathBuf>,
 
@@ -118,19 +129,26 @@ type Checked = (PathBuf, Result<Findings>);
 pub fn check(arguments: &CheckArguments) -> Result<Exit, Failure> {
     let (read, options) = (arguments.read.options(), CheckOptions { tiles: arguments.tiles });
     let output = arguments.repair.target(&arguments.files)?;
+    let monitor = interruptible();
     let mut listed = Vec::new();
     let mut exit = Exit::Success;
+    let mut last = None;
     for files in arguments.files.chunks(AT_A_TIME) {
-        let check = |path: &PathBuf| (path.clone(), check_file(path, &read, &options));
+        let check = |path: &PathBuf| (path.clone(), check_file(path, &read, &options, &monitor));
         let checked: Vec<Checked> = files.par_iter().map(check).collect();
-        for file in &checked {
+        for file in checked.iter().filter(|(_, result)| !matches!(result, Err(Error::Cancelled))) {
             exit = exit_of(exit, file);
             tell(arguments, file, &mut listed);
         }
+        if monitor.is_cancelled() {
+            return Ok(Exit::Interrupted);
+        }
+        last = checked.into_iter().last();
     }
-    if let (Some(output), [input]) = (output, &arguments.files[..]) {
-        let format = match mend(input, output, &read, &arguments.repair) {
-            Err(Error::Cancelled) => return Ok(Exit::Interrupted),
+    if let (Some(output), Some((input, Ok(found)))) = (output, last) {
+        arguments.read.refuse_misread(&input, &found)?;
+        let format = match mend(&input, output, &read, &arguments.repair, &monitor) {
+            Err(_) if monitor.is_cancelled() => return Ok(Exit::Interrupted),
             mended => mended?,
         };
         let read = NormalReadOptions {
@@ -139,7 +157,14 @@ pub fn check(arguments: &CheckArguments) -> Result<Exit, Failure> {
             convention: format.convention,
             ..read
         };
-        let repaired = (output.to_owned(), check_file(output, &read, &options));
+        let mut result = check_file(output, &read, &options, &monitor);
+        if monitor.is_cancelled() {
+            return Ok(Exit::Interrupted);
+        }
+        if let Ok(repaired) = &mut result {
+            repaired.add_unmendable(&found);
+        }
+        let repaired = (output.to_owned(), result);
         exit = exit_of(Exit::Success, &repaired);
         tell(arguments, &repaired, &mut listed);
     }
@@ -158,6 +183,21 @@ impl ReadArguments {
             convention: self.convention.unwrap_or_default(),
             max_bytes: self.max_bytes.map_or(default.max_bytes, |ByteSize(bytes)| bytes),
         }
+    }
+
+    /// Fails if a repair would destroy a map that seems to be read wrongly, unless the user has said that it is not.
+    fn refuse_misread(&self, input: &Path, found: &Findings) -> Result<()> {
+        let Some(misreading) = found.census.misreading() else { return Ok(()) };
+        let (is_said, otherwise) = match misreading {
+            Misreading::TwoChannels => (self.channels.is_some(), "--channels xyz"),
+            Misreading::UnormFloats => (self.encoding.is_some(), "--encoding float"),
+        };
+        if is_said {
+            return Ok(());
+        }
+        let reason = format!("it was not repaired: {misreading}");
+        let remedy = format!("{}, or with {otherwise} if it is as it should be", misreading.remedy());
+        Err(Error::File { path: input.into(), reason, remedy })
     }
 }
 
@@ -200,21 +240,51 @@ impl RepairArguments {
 }
 
 /// Writes the repaired map; what its codes mean.
-fn mend(input: &Path, output: &Path, read: &NormalReadOptions, options: &RepairArguments) -> Result<NormalFormat> {
+fn mend(
+    input: &Path,
+    output: &Path,
+    read: &NormalReadOptions,
+    options: &RepairArguments,
+    monitor: &Monitor,
+) -> Result<NormalFormat> {
     let open = || open_normals(input, read).map(|file| file.rows);
     let format = options.format(open()?.format());
-    let create = |size| create_normals(output, size, format);
-    let repaired = repair(&Baker::cpu(), &open, &create, format, &interruptible())?;
+    let create = |size| {
+        create_folder_of(output)?;
+        create_normals(output, size, format)
+    };
+    let repaired = repair(&Baker::cpu(), &open, &create, format, monitor).map_err(of_output)?;
     say(format_args!(
-        "{}: repaired to {} {} {} {}; texels without direction made flat: {}",
+        "{}: repaired to {} {} {} {}; made flat: {} of NaN, infinity or beyond 65536, {} of (0, 0, 0)",
         output.display(),
         format.encoding,
         format.depth,
         format.channels,
         format.convention,
-        repaired.flattened
+        texels(repaired.flattened),
+        repaired.zero_vectors,
     ));
     Ok(format)
+}
+
+/// The error of a format with the names of the options that set it: the input's was read before.
+fn of_output(error: Error) -> Error {
+    match error {
+        Error::Parameter { parameter: "encoding", value, range } => {
+            let range = format!("{range} (see --output-bits too)");
+            Error::Parameter { parameter: "output-encoding", value, range }
+        }
+        Error::Parameter { parameter: "bits", value, range } => {
+            Error::Parameter { parameter: "output-bits", value, range }
+        }
+        error => error,
+    }
+}
+
+/// Makes the folders above a file.
+pub fn create_folder_of(file: &Path) -> Result<()> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    std::fs::create_dir_all(folder).map_err(|source| Error::Io { path: folder.into(), source })
 }
 
 fn exit_of(exit: Exit, (_, result): &Checked) -> Exit {
@@ -284,6 +354,7 @@ fn json_of(path: &Path, result: &Result<Findings>) -> Value {
             "no-direction": count(census.no_direction),
             "zero-vector": count(census.zero_vectors),
             "non-unit": count(census.non_unit),
+            "rounding": count(census.rounding),
             "below-zero": count(census.below_zero),
             "at-zero": count(census.at_zero),
         },
@@ -299,6 +370,11 @@ fn json_of(path: &Path, result: &Result<Findings>) -> Value {
 
 fn count(tally: Tally) -> Value {
     json!({ "count": tally.count, "first": tally.first.map(place) })
+}
+
+/// `1 texel`, `2 texels`.
+pub fn texels(count: u64) -> String {
+    if count == 1 { "1 texel".into() } else { format!("{count} texels") }
 }
 
 /// Column and row.

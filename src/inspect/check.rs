@@ -1,7 +1,7 @@
 //! What is wrong with a normal map, in words and numbers.
 
 use super::banding::{Banding, BandingTest};
-use super::census::{Census, Tally, Texel};
+use super::census::{Census, Misreading, Tally, Texel};
 use super::green::{Green, GreenTest};
 use super::read::{Components, for_each_band};
 use super::seams::{Seam, SeamTest, Seams};
@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::io::{NormalFile, NormalReadOptions, open_normals};
 use crate::map::{Convention, NormalFormat, Size};
 use crate::names::named;
-use crate::stream::NormalSource;
+use crate::stream::{Monitor, NormalSource};
 use std::fmt;
 use std::path::Path;
 
@@ -67,8 +67,12 @@ pub enum Problem {
     NoDirection,
     /// (0, 0, 0).
     ZeroVector,
-    /// Lengths that rounding cannot give; the length farthest from 1.
+    /// The map seems to be read as what it is not: [`Misreading`].
+    Misread,
+    /// Lengths that no rounding can give; the length farthest from 1.
     NonUnit,
+    /// Lengths that are off by little: rounded otherwise than to the nearest code; the length farthest from 1.
+    Rounding,
     /// z below zero.
     BelowZero,
     /// z of zero.
@@ -98,9 +102,9 @@ pub enum Severity {
 
 named! {
     Problem "problem" {
-        NoDirection = "no-direction", ZeroVector = "zero-vector", NonUnit = "non-unit", BelowZero = "below-zero",
-        AtZero = "at-zero", Green = "green", Srgb = "srgb", File = "file", Seam = "seam", EightBit = "eight-bit",
-        Banding = "banding"
+        NoDirection = "no-direction", ZeroVector = "zero-vector", Misread = "misread", NonUnit = "non-unit",
+        Rounding = "rounding", BelowZero = "below-zero", AtZero = "at-zero", Green = "green", Srgb = "srgb",
+        File = "file", Seam = "seam", EightBit = "eight-bit", Banding = "banding"
     }
     Severity "severity" { Fault = "fault", Note = "note" }
 }
@@ -109,11 +113,12 @@ named! {
 ///
 /// ```
 /// use texbake::inspect::{CheckOptions, Problem, check};
+/// use texbake::stream::Monitor;
 /// use texbake::{Codes, NormalFormat, NormalMap, Size};
 ///
 /// let codes = Codes::U8(vec![128, 128, 255, 128, 128, 100]);
 /// let map = NormalMap::new(Size::new(2, 1)?, NormalFormat::default(), codes)?;
-/// let findings = check(map.into_rows(), &CheckOptions::default())?;
+/// let findings = check(map.into_rows(), &CheckOptions::default(), &Monitor::default())?;
 /// // 2 x 100 - 255 is -55 of 255.
 /// assert_eq!(findings.list[0].problem, Problem::NonUnit);
 /// assert_eq!(findings.list[1].problem, Problem::BelowZero);
@@ -121,14 +126,14 @@ named! {
 /// ```
 ///
 /// # Errors
-/// What the source reports; [`crate::Error::Threads`].
-pub fn check(source: Box<dyn NormalSource>, options: &CheckOptions) -> Result<Findings> {
+/// What the source reports; [`crate::Error::Cancelled`] if `monitor` says so; [`crate::Error::Threads`].
+pub fn check(source: Box<dyn NormalSource>, options: &CheckOptions, monitor: &Monitor) -> Result<Findings> {
     let (size, format) = (source.size(), source.format());
     let mut census = Census::new(size, format);
     let mut banding = BandingTest::new(format);
     let (mut green, mut seams) = (GreenTest::new(size), SeamTest::new(size));
     let mut row = Components::new(size, format);
-    for_each_band(vec![source], |_, rows, layers| {
+    for_each_band(vec![source], monitor, |_, rows, layers| {
         census.add_rows(layers[0]);
         let row_codes = layers[0].len() / rows;
         for first in (0..layers[0].len()).step_by(row_codes) {
@@ -150,9 +155,15 @@ pub fn check(source: Box<dyn NormalSource>, options: &CheckOptions) -> Result<Fi
 ///
 /// # Errors
 /// As [`open_normals`] and [`check`].
-pub fn check_file(path: &Path, read: &NormalReadOptions, options: &CheckOptions) -> Result<Findings> {
+pub fn check_file(
+    path: &Path,
+    read: &NormalReadOptions,
+    options: &CheckOptions,
+    monitor: &Monitor,
+) -> Result<Findings> {
+    monitor.check()?;
     let NormalFile { rows, warnings, says_srgb } = open_normals(path, read)?;
-    let mut findings = check(rows, options)?;
+    let mut findings = check(rows, options, monitor)?;
     for warning in warnings {
         let is_srgb = says_srgb && warning.contains("sRGB");
         let (problem, severity) =
@@ -182,6 +193,17 @@ impl Findings {
         self.list.iter().find(|finding| finding.problem == problem)
     }
 
+    /// Takes over what no repair can mend, though the repaired map, of which these are the findings, no longer shows it:
+    /// the 8 bits of the map that it was made of.
+    pub fn add_unmendable(&mut self, input: &Self) {
+        for problem in [Problem::EightBit, Problem::Banding] {
+            if let (Some(finding), None) = (input.of(problem), self.of(problem)) {
+                let what = format!("{}, which cannot be mended (found in the input)", finding.what);
+                self.add(Finding { what, ..finding.clone() });
+            }
+        }
+    }
+
     fn add(&mut self, finding: Finding) {
         self.list.push(finding);
         self.list.sort_by_key(|finding| finding.severity);
@@ -200,40 +222,57 @@ impl Findings {
     }
 
     fn judge_texels(&mut self) {
-        let Census { no_direction, zero_vectors, non_unit, below_zero, at_zero, worst_length, .. } = self.census;
+        let Census { no_direction, zero_vectors, below_zero, at_zero, .. } = self.census;
         let repair = |mends: &str| format!("texbake check --repair {mends}");
         let flat = || repair("makes them flat");
         self.judge_tally(Problem::NoDirection, no_direction, "of NaN, infinity or more than 65536", flat());
         self.judge_tally(Problem::ZeroVector, zero_vectors, "of (0, 0, 0)", flat());
-        let lengths = "of a length that rounding a unit vector cannot give";
-        if let Some(finding) = self.judge_tally(Problem::NonUnit, non_unit, lengths, repair("gives them their length"))
-            && let Some((length, at)) = worst_length
-        {
-            finding.what += &format!(", worst {length:.4} at {at}");
-            (finding.worst, finding.at) = (Some(length), Some(at));
+        if let Some(misreading) = self.census.misreading() {
+            let (what, remedy) = (misreading.to_string(), misreading.remedy().into());
+            self.add(Finding { what, remedy, ..Finding::new(Problem::Misread, Severity::Fault) });
         }
+        self.judge_lengths();
         let raise = repair("raises z to the least above zero");
-        let raise = if below_zero.count == self.census.texels {
-            "if it holds x and y alone, as xy maps in PNG do, read it with --channels xy".into()
-        } else {
-            format!("if the map is in tangent space at all, {raise}")
-        };
+        let raise = format!("if the map is in tangent space at all, {raise}");
         self.judge_tally(Problem::BelowZero, below_zero, "of z below zero, pointing into the surface", raise);
         let steep = "blends take z as the least above zero; bake with a lower --scale if that was not meant".into();
         self.judge_tally(Problem::AtZero, at_zero, "of z zero, as steep as the encoding can tell", steep);
     }
 
+    fn judge_lengths(&mut self) {
+        let Census { non_unit, rounding, worst_length, worst_rounding, .. } = self.census;
+        let what = "of a length that rounding a unit vector cannot give";
+        let remedy = "texbake check --repair gives them their length".into();
+        self.judge_tally(Problem::NonUnit, non_unit, what, remedy);
+        self.tell_worst(Problem::NonUnit, worst_length);
+        let what = "of a length slightly off, as of codes that were rounded otherwise than to the nearest";
+        let remedy = if self.census.seems_biased() {
+            "if 128 was written for zero and 255 for 1, read it with --encoding biased; else harmless"
+        } else {
+            "harmless; texbake check --repair rounds them to the nearest"
+        };
+        self.judge_tally(Problem::Rounding, rounding, what, remedy.into());
+        self.tell_worst(Problem::Rounding, worst_rounding);
+    }
+
+    fn tell_worst(&mut self, problem: Problem, worst: Option<(f64, Texel)>) {
+        let finding = self.list.iter_mut().find(|finding| finding.problem == problem);
+        if let (Some(finding), Some((length, at))) = (finding, worst) {
+            finding.what += &format!(", worst {} at {at}", Length(length));
+            (finding.worst, finding.at) = (Some(length), Some(at));
+        }
+    }
+
     /// Adds a finding if there is any texel.
-    fn judge_tally(&mut self, problem: Problem, tally: Tally, what: &str, remedy: String) -> Option<&mut Finding> {
-        let Tally { count, first } = tally;
-        let first = first?;
+    fn judge_tally(&mut self, problem: Problem, tally: Tally, what: &str, remedy: String) {
+        let Tally { count, first: Some(first) } = tally else { return };
         let share = count as f64 / self.census.texels as f64;
-        let severity = if problem == Problem::AtZero { Severity::Note } else { Severity::Fault };
+        let is_note = matches!(problem, Problem::AtZero | Problem::Rounding);
+        let severity = if is_note { Severity::Note } else { Severity::Fault };
         let texels = if count == 1 { "texel" } else { "texels" };
         let what = format!("{count} {texels} ({}) {what}, first at {first}", Percent(share));
         let (texels, share, at) = (Some(count), Some(share), Some(first));
         self.add(Finding { texels, share, at, what, remedy, ..Finding::new(problem, severity) });
-        self.list.iter_mut().find(|finding| finding.problem == problem)
     }
 
     fn judge_green(&mut self) {
@@ -249,11 +288,12 @@ impl Findings {
         self.add(Finding {
             worst: Some(ratio),
             what: format!(
-                "green seems to point {points} ({other}), not as {read_as} says: read so, slopes have {times}"
+                "green (or red) seems to point the other way, green {points} ({other}) and not as {read_as} says: read \
+                 so, slopes have {times}"
             ),
             remedy: format!(
-                "read it with --convention {other}; texbake check --repair --convention {other} --flip-green turns it \
-                 around"
+                "read it with --convention {other}; texbake check --repair --convention {other} --flip-green turns \
+                 green around; if it is red, export the map again"
             ),
             ..Finding::new(Problem::Green, Severity::Fault)
         });
@@ -307,6 +347,39 @@ fn seam_finding(seam: &Seam, name: &str, severity: Severity) -> Finding {
         what: format!("{what}, worst at {}", seam.worst),
         remedy: format!("{remedy}, if the map shall be repeated"),
         ..Finding::new(Problem::Seam, severity)
+    }
+}
+
+/// What speaks for it.
+impl fmt::Display for Misreading {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::TwoChannels => "the third channel is no z, but the same or not above zero everywhere",
+            Self::UnormFloats => "all values lie between 0 and 1, as if stored as unorm",
+        })
+    }
+}
+
+impl Misreading {
+    /// The way to read it.
+    pub fn remedy(self) -> &'static str {
+        match self {
+            Self::TwoChannels => "read it with --channels xy",
+            Self::UnormFloats => "read it with --encoding unorm",
+        }
+    }
+}
+
+/// A length, as what it is off by where it is nearly 1.
+struct Length(f64);
+
+impl fmt::Display for Length {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 - 1.0 {
+            off if off.abs() >= 0.01 => write!(f, "{:.4}", self.0),
+            off if off < 0.0 => write!(f, "1 - {:.2e}", -off),
+            off => write!(f, "1 + {off:.2e}"),
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use super::read::for_each_band;
 use crate::error::{Error, Result};
 use crate::exact::CodeReading;
 use crate::map::{Channels, CodesRef, NormalFormat, Size};
-use crate::stream::NormalSource;
+use crate::stream::{Monitor, NormalSource};
 use rayon::prelude::*;
 
 /// The differences between two normal maps of one size.
@@ -32,6 +32,8 @@ pub struct Difference {
     pub percentile_99: f32,
     /// Texels that differ: in a code if the formats are equal, else by an angle above zero or by having none.
     pub differing: u64,
+    /// Texels whose angle is above the tolerance.
+    pub above_tolerance: u64,
     /// Texels without an angle, since one map has no direction there, or both have not. NaN is equal to nothing.
     pub no_angle: u64,
 }
@@ -58,25 +60,33 @@ impl CodeDifference {
 }
 
 impl Difference {
-    /// Compares two maps, row by row.
+    /// Compares two maps, row by row, and counts the angles above `tolerance` degrees.
     ///
     /// ```
     /// use texbake::inspect::Difference;
+    /// use texbake::stream::Monitor;
     /// use texbake::{Codes, NormalFormat, NormalMap, Size};
     ///
     /// let map = |codes| NormalMap::new(Size::new(1, 1)?, NormalFormat::default(), Codes::U8(codes));
     /// let (flat, slope) = (map(vec![128, 128, 255])?, map(vec![218, 128, 218])?);
-    /// let difference = Difference::between(flat.into_rows(), slope.into_rows())?;
+    /// let difference = Difference::between(flat.into_rows(), slope.into_rows(), 10.0, &Monitor::default())?;
     /// assert_eq!(difference.largest.map(|(degrees, _)| degrees), Some(45.0));
+    /// assert_eq!(difference.above_tolerance, 1);
     /// # Ok::<(), texbake::Error>(())
     /// ```
     ///
     /// # Errors
-    /// [`Error::Parameter`] if the sizes differ; what the sources report; [`Error::Threads`].
-    pub fn between(a: Box<dyn NormalSource>, b: Box<dyn NormalSource>) -> Result<Self> {
+    /// [`Error::Parameter`] if the sizes differ; what the sources report; [`Error::Cancelled`] if `monitor` says so;
+    /// [`Error::Threads`].
+    pub fn between(
+        a: Box<dyn NormalSource>,
+        b: Box<dyn NormalSource>,
+        tolerance: f64,
+        monitor: &Monitor,
+    ) -> Result<Self> {
         let (size, formats) = (a.size(), [a.format(), b.format()]);
-        let mut sums = Sums::new(size, formats);
-        for_each_pair_of_rows([a, b], |row, pair, angles| {
+        let mut sums = Sums::new(size, formats, tolerance);
+        for_each_pair_of_rows([a, b], monitor, |row, pair, angles| {
             sums.add(row, pair, angles);
             Ok(())
         })?;
@@ -98,9 +108,11 @@ pub(super) const NO_ANGLE: f32 = f32::NAN;
 /// none.
 ///
 /// # Errors
-/// [`Error::Parameter`] if the sizes differ; what the sources and `look` report; [`Error::Threads`].
+/// [`Error::Parameter`] if the sizes differ; what the sources and `look` report; [`Error::Cancelled`];
+/// [`Error::Threads`].
 pub(super) fn for_each_pair_of_rows(
     [a, b]: [Box<dyn NormalSource>; 2],
+    monitor: &Monitor,
     mut look: impl FnMut(usize, [CodesRef<'_>; 2], &[f32]) -> Result<()>,
 ) -> Result<()> {
     let size = a.size();
@@ -112,7 +124,7 @@ pub(super) fn for_each_pair_of_rows(
     let turns = if formats[0].convention == formats[1].convention { 1.0 } else { -1.0 };
     let is_same_format = formats[0] == formats[1];
     let mut angles = Vec::new();
-    for_each_band(vec![a, b], |first_row, rows, layers| {
+    for_each_band(vec![a, b], monitor, |first_row, rows, layers| {
         let row_of = |layer: usize, row: usize| {
             let row_codes = layers[layer].len() / rows;
             layers[layer].slice(row * row_codes..(row + 1) * row_codes)
@@ -184,6 +196,8 @@ struct Sums {
     sum: f64,
     histogram: Histogram,
     differing: u64,
+    tolerance: f64,
+    above_tolerance: u64,
     no_angle: u64,
     codes: Option<CodeSums>,
 }
@@ -196,7 +210,7 @@ struct CodeSums {
 }
 
 impl Sums {
-    fn new(size: Size, formats: [NormalFormat; 2]) -> Self {
+    fn new(size: Size, formats: [NormalFormat; 2], tolerance: f64) -> Self {
         let channels = formats[0].channels.count();
         let codes = || CodeSums {
             reading: CodeReading::new(formats[0].texel()),
@@ -210,6 +224,8 @@ impl Sums {
             sum: 0.0,
             histogram: Histogram::new(),
             differing: 0,
+            tolerance,
+            above_tolerance: 0,
             no_angle: 0,
             codes: (formats[0] == formats[1]).then(codes),
         }
@@ -224,6 +240,7 @@ impl Sums {
             } else {
                 of_row += f64::from(*angle);
                 self.histogram.add(*angle);
+                self.above_tolerance += u64::from(f64::from(*angle) > self.tolerance);
                 if self.largest.is_none_or(|(largest, _)| *angle > largest) {
                     self.largest = Some((*angle, Texel { x, y }));
                 }
@@ -248,6 +265,7 @@ impl Sums {
             mean: if angles == 0 { 0.0 } else { self.sum / angles as f64 },
             percentile_99: self.histogram.percentile(99),
             differing: self.differing,
+            above_tolerance: self.above_tolerance,
             no_angle: self.no_angle,
         }
     }

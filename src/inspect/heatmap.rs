@@ -3,7 +3,7 @@
 use super::diff::for_each_pair_of_rows;
 use crate::error::{Error, Result};
 use crate::map::CodesRef;
-use crate::stream::{NormalSource, RowsOut};
+use crate::stream::{Monitor, NormalSource, RowsOut};
 use std::f64::consts::PI;
 
 /// The colour of a texel without an angle: none of the ramp's.
@@ -20,14 +20,19 @@ const NO_ANGLE: [u8; 3] = [255, 0, 255];
 ///
 /// # Errors
 /// [`Error::Parameter`] if `greatest` is not a number above 0, or the sizes differ; what the sources and the picture
-/// report.
-pub fn heatmap(a: Box<dyn NormalSource>, b: Box<dyn NormalSource>, greatest: f64, mut picture: RowsOut) -> Result<()> {
+/// report; [`Error::Cancelled`] if `monitor` says so.
+pub fn heatmap(
+    [a, b]: [Box<dyn NormalSource>; 2],
+    greatest: f64,
+    mut picture: RowsOut,
+    monitor: &Monitor,
+) -> Result<()> {
     if !(greatest > 0.0 && greatest.is_finite()) {
         return Err(Error::parameter("heatmap-max", greatest, "a number of degrees above 0"));
     }
     let ramp = ramp();
     let mut row = Vec::new();
-    for_each_pair_of_rows([a, b], |y, _, angles| {
+    for_each_pair_of_rows([a, b], monitor, |y, _, angles| {
         row.clear();
         row.extend(angles.iter().flat_map(|angle| colour(&ramp, f64::from(*angle) / greatest)));
         picture.write(y, CodesRef::U8(&row))

@@ -15,7 +15,7 @@ mod repair;
 mod seams;
 
 pub use banding::Banding;
-pub use census::{Census, Counted, Tally, Texel};
+pub use census::{Census, Counted, Misreading, Tally, Texel};
 pub use check::{CheckOptions, Finding, Findings, Problem, Severity, check, check_file};
 pub use diff::{CodeDifference, Difference};
 pub use green::Green;

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::exact::CodeReading;
 use crate::map::{Channels, CodesMut, CodesRef, Depth, NormalFormat, Size};
 use crate::ops::GREATEST_COMPONENT;
-use crate::stream::{LayerBands, LayerReader, LayerSource, NormalSource};
+use crate::stream::{LayerBands, LayerReader, LayerSource, Monitor, NormalSource};
 
 /// Bytes of a band: enough for a thread to be worth waking, little enough for a cache.
 const BAND_BYTES: usize = 1 << 20;
@@ -29,9 +29,11 @@ impl LayerSource for RawLayer {
 /// Gives `look` the rows of maps of one size: the number of the first row, how many, and the codes of each map.
 ///
 /// # Errors
-/// What the sources and `look` report; [`crate::Error::Threads`].
+/// What the sources and `look` report; [`crate::Error::Cancelled`] if `monitor` says so between two bands;
+/// [`crate::Error::Threads`].
 pub(super) fn for_each_band(
     sources: Vec<Box<dyn NormalSource>>,
+    monitor: &Monitor,
     mut look: impl FnMut(usize, usize, &[CodesRef<'_>]) -> Result<()>,
 ) -> Result<()> {
     let size = sources[0].size();
@@ -39,9 +41,11 @@ pub(super) fn for_each_band(
     let layers = sources.into_iter().map(|source| Box::new(RawLayer(source)) as Box<dyn LayerSource>).collect();
     let mut bands = LayerReader::new(layers, size.height(), (BAND_BYTES / row_bytes).max(1))?;
     let mut first_row = 0;
+    monitor.check()?;
     while let Some(band) = bands.next()? {
         look(first_row, band.rows, &band.layers)?;
         first_row += band.rows;
+        monitor.add((band.rows * size.width()) as u64)?;
     }
     Ok(())
 }

@@ -1,13 +1,14 @@
 //! What arithmetic can mend: lengths, z at or below zero, texels without direction, and green.
 
+use super::census::{Census, Counted};
 use crate::baker::{Baker, Ran};
 use crate::error::Result;
 use crate::map::{CodesMut, Encoding, NormalFormat, Size};
 use crate::ops::GREATEST_COMPONENT;
 use crate::ops::blend::{BlendInputs, BlendMethod, BlendOptions};
 use crate::stream::{Monitor, NormalRows, NormalSource, RowsOut};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::cell::RefCell;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// How a repair ran.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +17,8 @@ pub struct Repaired {
     pub ran: Ran,
     /// Texels of NaN, infinity or more than 65536, which are (0, 0, 1) now.
     pub flattened: u64,
+    /// Texels of (0, 0, 0), which are (0, 0, 1) now.
+    pub zero_vectors: u64,
 }
 
 /// Mends a normal map: the rows from `open` go into rows for `create`, in `format`.
@@ -36,19 +39,24 @@ pub fn repair(
     format: NormalFormat,
     monitor: &Monitor,
 ) -> Result<Repaired> {
-    let flattened = Arc::new(AtomicU64::new(0));
+    // Of the last try: rows of one that failed are counted again.
+    let last_census: RefCell<Option<Arc<Mutex<Census>>>> = RefCell::default();
     let open = || {
-        // Rows of a try that failed are counted again.
-        flattened.store(0, Relaxed);
-        let source = open()?;
+        let (source, census) = Counted::new(open()?);
+        last_census.replace(Some(census));
         let detail: NormalRows = Box::new(Flat { size: source.size(), format: source.format() });
-        let base: NormalRows = Box::new(Flattened { source, count: flattened.clone() });
+        let base: NormalRows = Box::new(Flattened(source));
         Ok(BlendInputs { base, detail, mask: None })
     };
     let method = BlendMethod::Weighted { base: 1.into(), detail: 0.into() };
     let options = BlendOptions { method, format, ..BlendOptions::default() };
     let ran = baker.blend_rows(&open, create, &options, monitor)?.ran;
-    Ok(Repaired { ran, flattened: flattened.load(Relaxed) })
+    let census = last_census.take();
+    let [flattened, zero_vectors] = census.map_or([0; 2], |census| {
+        let census = census.lock().unwrap_or_else(PoisonError::into_inner);
+        [census.no_direction.count, census.zero_vectors.count]
+    });
+    Ok(Repaired { ran, flattened, zero_vectors })
 }
 
 /// (0, 0, 1) everywhere.
@@ -95,46 +103,39 @@ fn fill<T: Copy>(codes: &mut [T], channels: usize, texel: [T; 3]) {
 }
 
 /// A map whose texels without direction are (0, 0, 1).
-struct Flattened {
-    source: NormalRows,
-    count: Arc<AtomicU64>,
-}
+struct Flattened(Counted);
 
 impl NormalSource for Flattened {
     fn size(&self) -> Size {
-        self.source.size()
+        self.0.size()
     }
 
     fn format(&self) -> NormalFormat {
-        self.source.format()
+        self.0.format()
     }
 
     fn read(&mut self, mut rows: CodesMut<'_>) -> Result<()> {
         let all = 0..rows.len();
-        self.source.read(rows.slice(all))?;
+        self.0.read(rows.slice(all))?;
         let channels = self.format().channels.count();
-        let flattened = match rows {
-            CodesMut::U8(_) | CodesMut::U16(_) => 0,
+        match rows {
+            CodesMut::U8(_) | CodesMut::U16(_) => {}
             CodesMut::F16(codes) => {
                 let flat = [half::f16::ZERO, half::f16::ZERO, half::f16::ONE];
-                flatten(codes, channels, flat, |code| code.to_f32())
+                flatten(codes, channels, flat, |code| code.to_f32());
             }
             CodesMut::F32(codes) => flatten(codes, channels, [0.0, 0.0, 1.0], |code| code),
-        };
-        self.count.fetch_add(flattened, Relaxed);
+        }
         Ok(())
     }
 }
 
-/// Makes texels without direction flat; how many.
-fn flatten<T: Copy>(codes: &mut [T], channels: usize, flat: [T; 3], float: impl Fn(T) -> f32) -> u64 {
-    let mut count = 0;
+/// Makes texels without direction flat.
+fn flatten<T: Copy>(codes: &mut [T], channels: usize, flat: [T; 3], float: impl Fn(T) -> f32) {
     for texel in codes.chunks_exact_mut(channels) {
         // NaN compares as not within.
         if !texel.iter().all(|code| float(*code).abs() <= GREATEST_COMPONENT) {
             texel.copy_from_slice(&flat[..channels]);
-            count += 1;
         }
     }
-    count
 }

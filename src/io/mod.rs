@@ -138,7 +138,10 @@ pub fn open_heights(path: &Path, options: &ReadOptions) -> Result<HeightFile> {
 /// | --- | --- | --- |
 /// | unsigned integers: PNG, TGA, BMP, JPEG, WebP, most TIFF | unorm | unorm, biased |
 /// | signed integers: TIFF | snorm | snorm |
-/// | floats: TIFF, EXR | float | float |
+/// | floats: TIFF, EXR | float | float, unorm |
+///
+/// Floats v that are read as unorm lie between 0 and 1, as Blender's normals do, and mean the components 2v - 1,
+/// computed in f32; the rows are components, and the format says float.
 ///
 /// | channels | components | may be read as |
 /// | --- | --- | --- |

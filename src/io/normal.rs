@@ -22,6 +22,8 @@ pub(super) struct NormalRows {
     format: NormalFormat,
     /// Whether the decoder has turned signed samples v into v + 2^(b-1).
     signed: bool,
+    /// Whether floats v are stored from 0 to 1 and mean 2v - 1.
+    unorm_floats: bool,
     next_row: usize,
     /// A row of samples, if they are more than the normals.
     interleaved: Samples,
@@ -32,8 +34,11 @@ impl NormalRows {
     pub fn new(path: &Path, opened: Opened, options: &NormalReadOptions) -> Result<(Self, Vec<String>)> {
         let Opened { samples, signed, lossy, says_srgb, mut warnings, .. } = opened;
         let layout = samples.layout();
+        let stored = encoding(path, layout.depth, signed, options.encoding)?;
+        let is_float = layout.depth == HeightType::F32;
         let format = NormalFormat {
-            encoding: encoding(path, layout.depth, signed, options.encoding)?,
+            // Floats become components while they are read.
+            encoding: if is_float { Encoding::Float } else { stored },
             depth: match layout.depth {
                 HeightType::U8 => Depth::Bits8,
                 HeightType::U16 => Depth::Bits16,
@@ -46,7 +51,8 @@ impl NormalRows {
         warnings.extend(lossy.then(|| LOSSY_WARNING.into()));
         let in_place = layout.per_texel() == format.channels.count();
         let interleaved = Samples::zeroed(layout.depth, if in_place { 0 } else { layout.per_row() });
-        Ok((Self { samples, layout, format, signed, next_row: 0, interleaved }, warnings))
+        let unorm_floats = is_float && stored == Encoding::Unorm;
+        Ok((Self { samples, layout, format, signed, unorm_floats, next_row: 0, interleaved }, warnings))
     }
 
     /// Reads rows and keeps the first samples of each texel.
@@ -98,6 +104,9 @@ impl NormalSource for NormalRows {
         if self.signed {
             to_twos_complement(&mut rows);
         }
+        if let (true, HeightsMut::F32(rows)) = (self.unorm_floats, &mut rows) {
+            rows.iter_mut().for_each(|v| *v = 2.0 * *v - 1.0);
+        }
         self.next_row += count / row_codes;
         Ok(())
     }
@@ -106,7 +115,9 @@ impl NormalSource for NormalRows {
 /// What the codes of a file mean; `asked` must be possible for its samples.
 fn encoding(path: &Path, depth: HeightType, signed: bool, asked: Option<Encoding>) -> Result<Encoding> {
     let (possible, what): (&[Encoding], _) = match (depth, signed) {
-        (HeightType::F32, _) => (&[Encoding::Float], "float: the file holds floats"),
+        (HeightType::F32, _) => {
+            (&[Encoding::Float, Encoding::Unorm], "float, or unorm if they lie between 0 and 1: the file holds floats")
+        }
         (_, true) => (&[Encoding::Snorm], "snorm: the file holds signed integers"),
         (_, false) => (&[Encoding::Unorm, Encoding::Biased], "unorm or biased: the file holds unsigned integers"),
     };

@@ -61,6 +61,76 @@ fn a_map_of_two_channels_in_a_png_is_guessed() {
 }
 
 #[test]
+fn a_map_of_two_channels_in_a_png_is_not_repaired_unless_it_is_said_what_it_is() {
+    let folder = folder();
+    folder.run(&["normal", "height.png", "-o", "xy.png", "--channels", "xy", "--scale", "10", "-q"]).ends(0);
+    let repair = |more: &[&str]| folder.run(&[&["check", "xy.png", "--repair", "-o", "new/n.png"], more].concat());
+    let run = repair(&[]).ends(1);
+    assert!(run.stdout.contains("  misread: the third channel is no z"), "{}", run.stdout);
+    run.says("error: xy.png: it was not repaired", &["--channels xy, or with --channels xyz if it is as it should be"]);
+    assert_eq!(folder.files("new"), [""; 0]);
+    // Two channels stay two; --channels xyz takes the user by the word. Missing folders are made.
+    repair(&["--channels", "xy"]).ends(0);
+    let (_, _, codes) = read_png(&folder.path("new/n.png"));
+    assert!(matches!(codes.as_ref(), CodesRef::U8(codes) if codes.chunks_exact(3).all(|texel| texel[2] == 0)));
+    repair(&["--channels", "xyz"]);
+    assert_eq!(folder.files("new"), ["n.png"]);
+}
+
+#[test]
+fn floats_from_0_to_1_are_guessed_and_can_be_read() {
+    let folder = folder();
+    folder.run(&["normal", "height.png", "-o", "signed.exr", "--scale", "10", "-q"]).ends(0);
+    let signed = texbake::NormalMap::read(folder.path("signed.exr")).unwrap();
+    let CodesRef::F32(components) = signed.codes() else { panic!("floats") };
+    let stored = components.iter().map(|v| (v + 1.0) / 2.0).collect();
+    let stored = texbake::NormalMap::new(signed.size(), signed.format(), texbake::Codes::F32(stored)).unwrap();
+    stored.write(folder.path("blender.exr")).unwrap();
+    let run = folder.run(&["check", "blender.exr"]).ends(1);
+    assert!(run.stdout.contains("as if stored as unorm; read it with --encoding unorm\n"), "{}", run.stdout);
+    let run = folder.run(&["check", "blender.exr", "--repair", "-o", "n.exr"]).ends(1);
+    run.says("error: blender.exr", &["--encoding unorm, or with --encoding float if it is as it should be"]);
+    assert_eq!(folder.run(&["check", "blender.exr", "--encoding", "unorm"]).ends(0).stdout, "blender.exr: ok\n");
+    let run = folder.run(&["diff", "signed.exr", "blender.exr", "--tolerance", "0.001"]).ends(1);
+    run.says("warning: blender.exr", &["as if stored as unorm; read it with --encoding unorm"]);
+    let compare = ["diff", "signed.exr", "blender.exr", "--encoding", "float,unorm", "--tolerance", "0.001"];
+    assert_eq!(folder.run(&compare).ends(0).stderr, "");
+    // Blends and parallax maps read it so too.
+    let blend = ["blend", "blender.exr", "sound.png", "--base-encoding", "unorm", "-o", "b.exr", "-q"];
+    assert_eq!(folder.run(&blend).ends(0).stderr, "");
+    let parallax = ["parallax", "height.png", "--normal", "blender.exr", "--normal-encoding", "unorm", "-o", "p.png"];
+    folder.run(&[&parallax[..], &["-q"]].concat()).ends(0);
+}
+
+#[test]
+fn eight_bits_in_the_input_are_told_of_the_repaired_map_too() {
+    let folder = folder();
+    let (width, height, codes) = read_png(&folder.path("sound.png"));
+    let CodesRef::U8(codes) = codes.as_ref() else { panic!("8 bits") };
+    let wide: Vec<u8> = codes.iter().flat_map(|code| [*code, *code]).collect();
+    folder.file("wide.png", png(width, height, png::ColorType::Rgb, png::BitDepth::Sixteen, &wide));
+    let run = folder.run(&["check", "wide.png", "--repair", "-o", "mended.png"]).ends(1);
+    let mended = run.stdout.split_once("\nmended.png: 1 fault\n").unwrap().1;
+    assert!(mended.starts_with("  eight-bit: every code is one of 8 bits"), "{mended}");
+    assert!(mended.contains("which cannot be mended (found in the input); bake it again"), "{mended}");
+}
+
+#[test]
+fn written_lines_of_help_fit_a_terminal() {
+    for (command, first) in [("check", "Faults, each"), ("diff", "The angle of a texel")] {
+        let output = Folder::new().command(&[command, "--help"]).env("COLUMNS", "100").output().unwrap();
+        let help = String::from_utf8(output.stdout).unwrap();
+        let written = &help[help.find(first).unwrap()..];
+        let long: Vec<_> = written.lines().filter(|line| line.chars().count() > 78).collect();
+        assert_eq!(long, [""; 0], "{command}");
+        assert_eq!(
+            written.lines().filter(|line| line.starts_with("  texbake ")).count(),
+            if command == "diff" { 3 } else { 4 }
+        );
+    }
+}
+
+#[test]
 fn every_fault_is_named_with_its_place_and_its_remedy() {
     let folder = folder();
     plant(&folder, "sound.png", "bad.png", &[(3, 4, [200, 128, 200]), (30, 31, [255, 128, 126]), (9, 9, [128; 3])]);
@@ -80,7 +150,11 @@ fn every_fault_is_named_with_its_place_and_its_remedy() {
         ]
     );
     let run = folder.run(&["check", "sound.png", "--convention", "dx"]).ends(1);
-    assert!(run.stdout.contains("\n  green: green seems to point up (gl), not as dx says: "), "{}", run.stdout);
+    assert!(
+        run.stdout.contains("\n  green: green (or red) seems to point the other way, green up (gl) "),
+        "{}",
+        run.stdout
+    );
     tag_srgb(&folder, "sound.png", "srgb.png");
     let run = folder.run(&["check", "srgb.png"]).ends(1);
     assert!(
@@ -136,7 +210,10 @@ fn a_repair_mends_what_it_can_and_leaves_the_input() {
     let run = folder.run(&["check", "bad.png", "--repair", "-o", "mended.png"]).ends(0);
     assert!(run.stdout.starts_with("bad.png: 3 faults\n"), "{}", run.stdout);
     assert!(run.stdout.contains("\nmended.png: ok\n"), "{}", run.stdout);
-    run.says("mended.png: repaired", &["unorm 8 xyz gl", "texels without direction made flat: 0"]);
+    run.says(
+        "mended.png: repaired",
+        &["unorm 8 xyz gl", "made flat: 0 texels of NaN, infinity or beyond 65536, 1 of (0, 0, 0)"],
+    );
     let (_, _, codes) = read_png(&folder.path("mended.png"));
     let CodesRef::U8(codes) = codes.as_ref() else { panic!("8 bits") };
     let texel = |x: usize, y: usize| &codes[3 * (SIDE * y + x)..][..3];
@@ -173,7 +250,7 @@ fn floats_without_direction_are_made_flat() {
         "{}",
         run.stdout
     );
-    run.says("mended.exr: repaired", &["texels without direction made flat: 1"]);
+    run.says("mended.exr: repaired", &["made flat: 1 texel of NaN, infinity or beyond 65536, 0 of (0, 0, 0)"]);
     let mended = texbake::NormalMap::read(folder.path("mended.exr")).unwrap();
     assert_eq!(mended.codes(), CodesRef::F32(&[0.0, 0.0, 1.0].repeat(16)));
 }
@@ -194,15 +271,26 @@ fn wrong_input_is_named_and_the_others_are_checked() {
 #[test]
 fn wrong_arguments_end_with_2() {
     let folder = folder();
-    let cases: [(&[&str], &str); 8] = [
+    let cases: [(&[&str], &str); 10] = [
         (&["check"], "<FILE>..."),
+        (
+            &["check", "sound.png", "--repair", "-o", "n.exr", "--output-encoding", "unorm"],
+            "--output-encoding is unorm with 8 bits, for n.exr",
+        ),
+        (
+            &["check", "sound.png", "--repair", "-o", "n.png", "--output-encoding", "float", "--output-bits", "8"],
+            "--output-bits is 8: it must be 16f or 32f",
+        ),
         (&["check", "sound.png", "--repair"], "--output <FILE>"),
         (&["check", "sound.png", "-o", "n.png"], "--repair"),
         (&["check", "sound.png", "--flip-green"], "--repair"),
         (&["check", "sound.png", "sound.png", "--repair", "-o", "n.png"], "--repair takes one FILE, not 2"),
         (&["check", "sound.png", "--repair", "-o", "./sound.png"], "never overwrites it"),
         (&["check", "sound.png", "--encoding", "snorm"], "snorm"),
-        (&["check", "sound.png", "--repair", "-o", "n.png", "--output-bits", "32f"], "EXR and TIFF hold floats"),
+        (
+            &["check", "sound.png", "--repair", "-o", "n.png", "--output-bits", "32f"],
+            "--output-encoding is float with 32f",
+        ),
     ];
     let files = folder.files(".");
     for (arguments, part) in cases {
@@ -220,7 +308,9 @@ fn help_says_what_each_fault_is() {
     for word in [
         "no-direction",
         "zero-vector",
+        "misread",
         "non-unit",
+        "rounding",
         "below-zero",
         "at-zero",
         "green",

@@ -42,7 +42,14 @@ fn maps_that_differ_end_with_1_above_the_tolerance() {
          codes: largest difference 90, mean 0.213333 (x 90 and 0.455000, y 0 and 0.000000, z 37 and 0.185000)\n\
          angle: largest 45.000000 degrees at column 7, row 8, 99th percentile 0.000000, mean 0.228370\n"
     );
-    folder.run(&["diff", "flat.png", "other.png", "--tolerance", "44.99"]).ends(1);
+    // atan(3 / 255) is 0.674 degrees.
+    let above = |tolerance: &str, exit| {
+        let run = folder.run(&["diff", "flat.png", "other.png", "--tolerance", tolerance]).ends(exit);
+        run.stdout.lines().nth(1).unwrap().to_owned()
+    };
+    assert_eq!(above("0.6", 1), "2 texels (1.0000%) above 0.6 degrees");
+    assert_eq!(above("44.99", 1), "1 texel (0.5000%) above 44.99 degrees");
+    assert_eq!(above("50", 0), "0 texels (0.0000%) above 50 degrees");
     folder.run(&["diff", "flat.png", "other.png", "--tolerance", "45"]).ends(0);
 }
 
@@ -56,6 +63,7 @@ fn json_holds_the_same() {
         (&json["differing"], &json["no_angle"], &json["within_tolerance"]),
         (&2.into(), &0.into(), &true.into())
     );
+    assert_eq!((&json["above_tolerance"], &json["heatmap"]), (&0.into(), &serde_json::Value::Null));
     assert_eq!(json["codes"]["largest_of_channels"], serde_json::json!([90.0, 0.0, 37.0]));
     assert_eq!((&json["degrees"]["largest"], &json["tolerance"]), (&45.0.into(), &50.0.into()));
     assert_eq!(json["worst"], serde_json::json!({ "x": 7, "y": 8 }));
@@ -90,7 +98,13 @@ fn each_map_may_be_read_in_its_own_way() {
 #[test]
 fn the_heatmap_is_as_large_as_the_maps() {
     let folder = folder();
-    folder.run(&["diff", "flat.png", "other.png", "--heatmap", "heat.png"]).ends(1);
+    // Missing folders are made.
+    let run = folder.run(&["diff", "flat.png", "other.png", "--heatmap", "new/heat.png", "--json"]).ends(1);
+    let json: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(json["heatmap"], serde_json::json!({ "file": "new/heat.png", "white_degrees": 45.0 }));
+    let run = folder.run(&["diff", "flat.png", "other.png", "--heatmap", "heat.png"]).ends(1);
+    assert!(run.stdout.ends_with("\nheat.png: white is 45.000000 degrees and more\n"), "{}", run.stdout);
+    assert_eq!(std::fs::read(folder.path("new/heat.png")).unwrap(), std::fs::read(folder.path("heat.png")).unwrap());
     let (width, height, codes) = read_png(&folder.path("heat.png"));
     let CodesRef::U8(codes) = codes.as_ref() else { panic!("8 bits") };
     assert_eq!((width, height), (20, 10));
@@ -116,9 +130,11 @@ fn wrong_input_is_named() {
     folder.file("small.png", png(2, 2, png::ColorType::Rgb, png::BitDepth::Eight, &[128; 12]));
     folder.run(&["diff", "flat.png", "missing.png"]).ends(1).says("error: missing.png", &["No such file"]);
     folder.run(&["diff", "height.png", "flat.png"]).ends(1).says("error: height.png", &["height map"]);
-    let run = folder.run(&["diff", "flat.png", "small.png", "--heatmap", "heat.png"]).ends(2);
-    run.says("error: ", &["size of the second map is 2 x 2: it must be 20 x 10"]);
-    let cases: [(&[&str], &str); 7] = [
+    let run = folder.run(&["diff", "flat.png", "small.png", "--heatmap", "heat.png"]).ends(1);
+    run.says("error: flat.png has 20 x 10 texels", &["small.png 2 x 2: give two maps of one size"]);
+    folder.run(&["diff", "flat.png", "other.png", "--heatmap", "h.gif"]).ends(1).says("error: h.gif", &[".gif"]);
+    let cases: [(&[&str], &str); 8] = [
+        (&["diff", "flat.png", "other.png", "--heatmap", "h.exr"], "--heatmap is h.exr: it must be a .png or .tif"),
         (&["diff", "flat.png"], "<B>"),
         (&["diff", "flat.png", "other.png", "--tolerance", "-1"], "number of degrees"),
         (&["diff", "flat.png", "other.png", "--tolerance", "x"], "number of degrees"),
@@ -132,4 +148,23 @@ fn wrong_input_is_named() {
         assert!(run.stderr.contains(part), "{arguments:?}: {}", run.stderr);
     }
     assert_eq!(folder.files("."), ["flat.png", "height.png", "other.png", "small.png"]);
+}
+
+#[test]
+fn a_map_of_two_channels_in_a_png_is_guessed() {
+    let folder = Folder::new();
+    folder.grey8("height.png", 40, 30, bumps8);
+    for (name, channels) in [("xyz.png", "xyz"), ("xy.png", "xy")] {
+        folder.run(&["normal", "height.png", "-o", name, "--channels", channels, "--scale", "2", "-q"]).ends(0);
+    }
+    let run = folder.run(&["diff", "xyz.png", "xy.png"]).ends(1);
+    assert!(
+        run.stderr.starts_with("warning: xy.png: ") && run.stderr.ends_with("read it with --channels xy\n"),
+        "{}",
+        run.stderr
+    );
+    assert_eq!(
+        folder.run(&["diff", "xyz.png", "xy.png", "--channels", "xyz,xy", "--tolerance", "30"]).ends(0).stderr,
+        ""
+    );
 }

@@ -97,6 +97,68 @@ fn an_interrupted_blend_leaves_nothing() {
     panic!("no run was interrupted");
 }
 
+#[test]
+fn an_interrupted_check_or_diff_leaves_nothing() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("out")).unwrap();
+    sparse_tiff(&folder, "map.tif", 4096, 65535);
+    let arguments: [&[&str]; 3] = [
+        &["check", "map.tif", "--json"],
+        &["diff", "map.tif", "map.tif", "--heatmap", "out/heat.tif"],
+        &["check", "map.tif", "--repair", "--channels", "xyz", "-o", "out/n.tif"],
+    ];
+    for arguments in arguments {
+        let child = folder.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let id = child.id().to_string();
+        // Until it listens for signals.
+        while !listens(&id) {
+            std::thread::yield_now();
+        }
+        assert!(Command::new("kill").args(["-TERM", &id]).status().unwrap().success());
+        let run = Run::from(child.wait_with_output().unwrap()).ends(130);
+        assert!(run.stderr.contains("interrupted: "), "{arguments:?}: {}", run.stderr);
+        assert_eq!((run.stdout.as_str(), folder.files("out")), ("", Vec::new()), "{arguments:?}");
+    }
+}
+
+#[test]
+fn an_interrupt_while_the_repaired_map_is_checked_keeps_it() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("out")).unwrap();
+    // A machine that is done before the signal comes gets more to do.
+    for rows in [4096, 16384, 65535] {
+        sparse_tiff(&folder, "map.tif", 4096, rows);
+        let arguments = ["check", "map.tif", "--repair", "--channels", "xyz", "-o", "out/n.tif"];
+        let child = folder.command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        while folder.files("out") != ["n.tif"] {
+            std::thread::yield_now();
+        }
+        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        if [Some(0), Some(1)].contains(&output.status.code()) {
+            std::fs::remove_file(folder.path("out/n.tif")).unwrap();
+            continue;
+        }
+        let run = Run::from(output).ends(130);
+        assert!(!run.stdout.contains("\nout/n.tif: "), "{}", run.stdout);
+        assert_eq!(folder.files("out"), ["n.tif"]);
+        return;
+    }
+    panic!("no run was interrupted");
+}
+
+/// Whether a process catches SIGTERM, as Linux says; elsewhere after a while.
+fn listens(id: &str) -> bool {
+    let Ok(status) = std::fs::read_to_string(format!("/proc/{id}/status")) else {
+        std::thread::sleep(std::time::Duration::from_millis(500));
+        return true;
+    };
+    let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+    let caught = caught.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+    const SIGTERM: u64 = 15;
+    caught >> (SIGTERM - 1) & 1 == 1
+}
+
 /// A plain RGB TIFF of 8 bits whose samples are a hole in the file: large, and made at once.
 fn sparse_tiff(folder: &Folder, name: &str, width: u32, height: u32) {
     // One row to a strip; the strips' offsets and lengths follow the directory of ten entries.

@@ -2,7 +2,7 @@
 
 use super::support::{encoded, findings, planted, problems, sound, texel, xy};
 use crate::support::{BIASED8, FLOAT16, FLOAT32, FORMATS, SNORM16, UNORM8, UNORM16};
-use texbake::inspect::{Census, Counted, Problem, Severity, Tally};
+use texbake::inspect::{Census, Counted, Misreading, Problem, Severity, Tally};
 use texbake::stream::NormalSource;
 use texbake::{Codes, CodesMut, NormalFormat, NormalMap, Size};
 
@@ -45,7 +45,8 @@ fn lengths_that_rounding_cannot_give_are_counted() {
 fn the_bound_is_what_rounding_explains() {
     let is_unit = |format: NormalFormat, codes: [f64; 3]| {
         let flat = encoded(1, 1, format, |_, _| [0.0, 0.0, 1.0]);
-        findings(&planted(&flat, &[(texel(0, 0), codes)])).census.non_unit.count == 0
+        let census = findings(&planted(&flat, &[(texel(0, 0), codes)])).census;
+        census.non_unit.count + census.rounding.count == 0
     };
     // unorm 8: 255 in units of 1/255 is off by 1 in each component, root 3 in all: squares from 253.27^2 to 256.73^2;
     // (147, 147, 147): 254.61; (148, 147, 147): 255.77; (149, 149, 147): 257.
@@ -67,6 +68,128 @@ fn the_bound_is_what_rounding_explains() {
     let short_by = |exponent: i32| [0.0, 0.0, 1.0 - 2f64.powi(exponent)];
     assert!(is_unit(FLOAT16, short_by(-11)) && !is_unit(FLOAT16, short_by(-9)));
     assert!(is_unit(FLOAT32, short_by(-11)) && is_unit(FLOAT32, short_by(-21)) && !is_unit(FLOAT32, short_by(-19)));
+}
+
+/// Whether a length counts as off by rounding, or as wrong.
+fn tallies(format: NormalFormat, codes: [f64; 3]) -> [u64; 2] {
+    let flat = encoded(2, 1, format, |_, _| [0.0, 0.0, 1.0]);
+    let census = findings(&planted(&flat, &[(texel(1, 0), codes)])).census;
+    [census.rounding.count, census.non_unit.count]
+}
+
+#[test]
+fn up_to_three_steps_are_rounding_and_more_are_not() {
+    // A step of unorm 8 is 2/255: 249 of 255 is three steps short, which is (0, 0, 252).
+    assert_eq!(tallies(UNORM8, [128.0, 128.0, 252.0]), [1, 0]);
+    assert_eq!(tallies(UNORM8, [128.0, 128.0, 251.0]), [0, 1]);
+    // 127 less 3; 127.88 is 0.88 too long.
+    assert_eq!(tallies(BIASED8, [128.0, 128.0, 252.0]), [1, 0]);
+    assert_eq!(tallies(BIASED8, [128.0, 128.0, 251.0]), [0, 1]);
+    assert_eq!(tallies(BIASED8, [128.0, 143.0, 255.0]), [1, 0]);
+    assert_eq!([tallies(SNORM16, [0.0, 0.0, 32764.0]), tallies(SNORM16, [0.0, 0.0, 32763.0])], [[1, 0], [0, 1]]);
+    for format in [FLOAT16, FLOAT32] {
+        let short_by = |part: f64| [0.0, 0.0, 1.0 - part];
+        assert_eq!(tallies(format, short_by(1.0 / 512.0)), [1, 0], "{format:?}");
+        assert_eq!(tallies(format, short_by(1.0 / 256.0)), [0, 1], "{format:?}");
+    }
+}
+
+/// Directions of a tilted dome, of every azimuth.
+fn dome(x: usize, y: usize) -> [f64; 3] {
+    let [p, q] = [(x as f64 - 31.5) / 20.0, (y as f64 - 29.5) / 20.0];
+    let length = (p * p + q * q + 1.0).sqrt();
+    [p / length, q / length, 1.0 / length]
+}
+
+#[test]
+fn other_ways_to_round_are_a_note() {
+    let truncate = |v: f64| ((v + 1.0) / 2.0 * 255.0).floor();
+    let by_256 = |v: f64| ((v + 1.0) / 2.0 * 255.999).floor();
+    let biased = |v: f64| (127.0 * v).round() + 128.0;
+    let ways: [&dyn Fn(f64) -> f64; 3] = [&truncate, &by_256, &biased];
+    for (code, name) in ways.into_iter().zip(["truncated", "times 255.999", "biased"]) {
+        let codes = (0..64 * 64).flat_map(|i| dome(i % 64, i / 64).map(|v| code(v) as u8)).collect();
+        let map = NormalMap::new(Size::new(64, 64).unwrap(), UNORM8, Codes::U8(codes)).unwrap();
+        let found = findings(&map);
+        let note = found.of(Problem::Rounding).unwrap_or_else(|| panic!("{name}: {:?}", found.list));
+        assert_eq!((note.severity, found.census.non_unit), (Severity::Note, NONE), "{name}");
+        assert_eq!(note.remedy.contains("--encoding biased"), name == "biased", "{name}: {note}");
+        assert!((note.worst.unwrap() - 1.0).abs() > 3f64.sqrt() / 255.0, "{name}: {note}");
+    }
+}
+
+#[test]
+fn a_length_next_to_1_is_told_by_what_it_is_off() {
+    let flat = encoded(1, 1, FLOAT32, |_, _| [0.0, 0.0, 1.0]);
+    // 1 - 3 2^-20 is 2.86 millionths short.
+    let map = planted(&flat, &[(texel(0, 0), [0.0, 0.0, 1.0 - 3.0 / 1_048_576.0])]);
+    let found = findings(&map);
+    assert_eq!(
+        found.of(Problem::Rounding).unwrap().what,
+        "1 texel (100%) of a length slightly off, as of codes that were rounded otherwise than to the nearest, first \
+         at column 0, row 0, worst 1 - 2.86e-6 at column 0, row 0"
+    );
+    assert!(!found.has_faults());
+}
+
+#[test]
+fn a_third_channel_that_is_no_z_is_found() {
+    let misreading = |map: &NormalMap| findings(map).census.misreading();
+    for format in FORMATS {
+        let map = |blue: f64| {
+            let map = sound(24, 24, format);
+            let image = crate::support::Image::from(&map);
+            let texels: Vec<_> = (0..24 * 24)
+                .map(|i| {
+                    let of = image.texel(i % 24, i / 24);
+                    (texel(i % 24, i / 24), [of[0], of[1], blue])
+                })
+                .collect();
+            planted(&map, &texels)
+        };
+        let one = match (format.encoding, format.depth == UNORM8.depth) {
+            (texbake::Encoding::Float, _) => 1.0,
+            (texbake::Encoding::Snorm, true) => 127.0,
+            (texbake::Encoding::Snorm, false) => 32_767.0,
+            (_, true) => 255.0,
+            (_, false) => 65_535.0,
+        };
+        assert_eq!(misreading(&sound(24, 24, format)), None, "{format:?}");
+        for blue in [0.0, one] {
+            assert_eq!(misreading(&map(blue)), Some(Misreading::TwoChannels), "{format:?}, {blue}");
+            let finding = findings(&map(blue)).of(Problem::Misread).cloned().unwrap();
+            assert_eq!((finding.severity, finding.remedy.as_str()), (Severity::Fault, "read it with --channels xy"));
+        }
+        // Nothing is said of what has two channels, nor of one length everywhere.
+        assert_eq!(misreading(&sound(24, 24, xy(format))), None, "{format:?}");
+        let cone = |x: usize, y: usize| if (x + y).is_multiple_of(2) { [0.6, 0.0, 0.8] } else { [0.0, -0.6, 0.8] };
+        assert_eq!(misreading(&encoded(8, 8, format, cone)), None, "{format:?}");
+    }
+    // As steep as the encoding can tell, everywhere.
+    assert_eq!(misreading(&encoded(8, 8, UNORM8, |x, _| [if x % 2 == 0 { 1.0 } else { -1.0 }, 0.0, 0.0])), None);
+    let flat = encoded(8, 8, FLOAT32, |_, _| [0.0; 3]);
+    assert_eq!(misreading(&flat), Some(Misreading::TwoChannels));
+}
+
+#[test]
+fn floats_from_0_to_1_are_found() {
+    for format in [FLOAT16, FLOAT32] {
+        let stored = encoded(64, 64, format, |x, y| dome(x, y).map(|v| (v + 1.0) / 2.0));
+        let found = findings(&stored);
+        assert_eq!(found.census.misreading(), Some(Misreading::UnormFloats), "{format:?}");
+        let finding = found.of(Problem::Misread).unwrap();
+        assert_eq!(
+            finding.to_string(),
+            "misread: all values lie between 0 and 1, as if stored as unorm; read it with --encoding unorm"
+        );
+        // One value beyond; flat; slopes along +x and +y alone.
+        let beyond = planted(&stored, &[(texel(3, 3), [0.5, 0.5, 1.5])]);
+        let flat = encoded(8, 8, format, |_, _| [0.0, 0.0, 1.0]);
+        let corner = encoded(64, 64, format, |x, y| dome(x, y).map(f64::abs));
+        for map in [beyond, flat, corner] {
+            assert_eq!(findings(&map).census.misreading(), None, "{format:?}");
+        }
+    }
 }
 
 #[test]

@@ -4,11 +4,16 @@ use super::support::{dx, encoded, planted, sound, texel, xy};
 use crate::support::{BIASED16, FLOAT16, FLOAT32, FORMATS, SNORM8, UNORM8};
 use texbake::inspect::{Difference, heatmap};
 use texbake::io::create_normals;
-use texbake::stream::RowSink;
+use texbake::stream::{Monitor, RowSink};
 use texbake::{Codes, CodesRef, NormalFormat, NormalMap, Result, Size};
 
 fn difference(a: &NormalMap, b: &NormalMap) -> Difference {
-    Difference::between(a.clone().into_rows(), b.clone().into_rows()).unwrap()
+    difference_above(a, b, 0.0)
+}
+
+/// Angles above `tolerance` degrees are counted.
+fn difference_above(a: &NormalMap, b: &NormalMap, tolerance: f64) -> Difference {
+    Difference::between(a.clone().into_rows(), b.clone().into_rows(), tolerance, &Monitor::default()).unwrap()
 }
 
 fn flat(width: usize, height: usize, format: NormalFormat) -> NormalMap {
@@ -61,6 +66,8 @@ fn one_code_apart_is_found_where_it_is() {
     assert!((found.mean - (a + b) / 5000.0).abs() < 1e-9, "{}", found.mean);
     assert_eq!(found.percentile_99, 0.0);
     assert!(found.exceeds(0.0) && found.exceeds(1.12) && !found.exceeds(1.13));
+    let above = |tolerance| difference_above(&map, &other, tolerance).above_tolerance;
+    assert_eq!([above(0.0), above(0.67), above(0.68), above(1.13)], [2, 2, 1, 0]);
 }
 
 #[test]
@@ -137,6 +144,7 @@ fn what_has_no_direction_has_no_angle_and_differs() {
     );
     let found = difference(&map, &broken);
     assert_eq!((found.no_angle, found.differing, found.largest), (3, 3, Some((0.0, texel(0, 0)))));
+    assert_eq!(found.above_tolerance, 0);
     assert!(found.exceeds(180.0));
     // NaN is equal to nothing; the others are to themselves.
     let same = difference(&broken, &broken);
@@ -150,7 +158,8 @@ fn what_has_no_direction_has_no_angle_and_differs() {
 
 #[test]
 fn sizes_must_be_equal() {
-    let error = Difference::between(flat(4, 5, UNORM8).into_rows(), flat(5, 4, UNORM8).into_rows()).unwrap_err();
+    let [a, b] = [flat(4, 5, UNORM8), flat(5, 4, UNORM8)].map(NormalMap::into_rows);
+    let error = Difference::between(a, b, 0.0, &Monitor::default()).unwrap_err();
     assert_eq!(error.to_string(), "size of the second map is 5 x 4: it must be 4 x 5, as the first map's");
 }
 
@@ -162,7 +171,8 @@ fn a_heatmap_is_black_where_nothing_differs_and_white_at_the_greatest() {
     let angles = [0.0, 10.0, 20.0, 40.0];
     let map = encoded(5, 2, FLOAT32, |x, y| if x == 4 { [f64::NAN; 3] } else { tilt(angles[x] * (1 - y) as f64) });
     let picture = create_normals(&path, Size::new(5, 2).unwrap(), NormalFormat::default()).unwrap();
-    heatmap(flat(5, 2, FLOAT32).into_rows(), map.clone().into_rows(), 20.0, picture).unwrap();
+    let pair = || [flat(5, 2, FLOAT32), map.clone()].map(NormalMap::into_rows);
+    heatmap(pair(), 20.0, picture, &Monitor::default()).unwrap();
     let picture = NormalMap::read(&path).unwrap();
     let CodesRef::U8(pixels) = picture.codes() else { panic!("8 bits") };
     // Half-way, l = 128/255: 255 (l + l (1 - l)/2 (a cos t + b sin t)) with t = 2 pi (1/6 - 3/2 l) is this.
@@ -173,7 +183,7 @@ fn a_heatmap_is_black_where_nothing_differs_and_white_at_the_greatest() {
     }
     assert_eq!(pixels[15..], [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 255, 0, 255]);
     for greatest in [0.0, -1.0, f64::NAN] {
-        let error = heatmap(map.clone().into_rows(), map.clone().into_rows(), greatest, Box::new(Nowhere)).unwrap_err();
+        let error = heatmap(pair(), greatest, Box::new(Nowhere), &Monitor::default()).unwrap_err();
         assert!(error.to_string().starts_with("heatmap-max is "), "{error}");
     }
 }
@@ -189,4 +199,18 @@ impl RowSink for Nowhere {
     fn finish(self: Box<Self>) -> Result<()> {
         panic!("nothing was to be painted")
     }
+}
+
+#[test]
+fn a_cancelled_monitor_ends_every_pass() {
+    let map = flat(16, 16, UNORM8);
+    let monitor = Monitor::default();
+    monitor.cancel();
+    let pair = || [map.clone(), map.clone()].map(NormalMap::into_rows);
+    let [a, b] = pair();
+    assert!(matches!(Difference::between(a, b, 0.0, &monitor), Err(texbake::Error::Cancelled)));
+    assert!(matches!(heatmap(pair(), 1.0, Box::new(Nowhere), &monitor), Err(texbake::Error::Cancelled)));
+    let options = texbake::inspect::CheckOptions::default();
+    let checked = texbake::inspect::check(map.clone().into_rows(), &options, &monitor);
+    assert!(matches!(checked, Err(texbake::Error::Cancelled)));
 }

@@ -37,7 +37,9 @@ fn a_convention_that_is_misread_is_found_in_any_format() {
     let found = findings(&misread(&sound(64, 48, dx(UNORM8))));
     let finding = found.of(Problem::Green).unwrap();
     assert!(
-        finding.what.starts_with("green seems to point down (dx), not as gl says: read so, slopes have "),
+        finding.what.starts_with(
+            "green (or red) seems to point the other way, green down (dx) and not as gl says: read so, slopes have "
+        ),
         "{finding}"
     );
     assert!(finding.remedy.starts_with("read it with --convention dx; "), "{finding}");

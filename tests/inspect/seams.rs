@@ -3,6 +3,7 @@
 use super::support::{findings, sound, texel, waves};
 use crate::support::{FORMATS, Random, UNORM8, UNORM16};
 use texbake::inspect::{CheckOptions, Problem, Severity, Texel, check};
+use texbake::stream::Monitor;
 use texbake::{Baker, Codes, CodesRef, Edge, Edges, Grid, HeightMap, NormalMap, NormalOptions, Scale, Size};
 
 /// The columns `from..to` of an 8-bit map.
@@ -48,7 +49,7 @@ fn a_cut_map_does_not_fit_where_it_was_cut() {
 #[test]
 fn a_seam_is_a_note_unless_the_map_shall_tile() {
     let cut = columns(&sound(64, 64, UNORM8), 0, 41);
-    let found = check(cut.into_rows(), &CheckOptions { tiles: false }).unwrap();
+    let found = check(cut.into_rows(), &CheckOptions { tiles: false }, &Monitor::default()).unwrap();
     assert_eq!((found.list[0].problem, found.list[0].severity), (Problem::Seam, Severity::Note));
     assert!(!found.has_faults());
 }

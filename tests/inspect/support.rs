@@ -3,6 +3,7 @@
 use crate::support::Random;
 use half::f16;
 use texbake::inspect::{CheckOptions, Findings, Problem, Texel, check};
+use texbake::stream::Monitor;
 use texbake::{
     Baker, Channels, Codes, CodesRef, Convention, Depth, Encoding, Grid, HeightMap, NormalFormat, NormalMap,
     NormalOptions, Scale, Size,
@@ -81,7 +82,7 @@ pub fn planted<const N: usize>(map: &NormalMap, texels: &[(Texel, [f64; N])]) ->
 
 /// What is found in a map that shall tile.
 pub fn findings(map: &NormalMap) -> Findings {
-    check(map.clone().into_rows(), &CheckOptions { tiles: true }).unwrap()
+    check(map.clone().into_rows(), &CheckOptions { tiles: true }, &Monitor::default()).unwrap()
 }
 
 /// The problems that are found, faults first.

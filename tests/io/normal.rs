@@ -153,8 +153,10 @@ fn floats_pass_as_they_are() {
     let map = read_normals_all_ways(&path, &default()).unwrap();
     assert_eq!(map.format(), format(Encoding::Float, Depth::Float32, Channels::Xyz));
     assert_eq!(map.codes().bytes(), CodesRef::F32(&floats).bytes());
-    for wrong in [Encoding::Unorm, Encoding::Snorm, Encoding::Biased] {
-        let expected = std::format!("encoding is {wrong}, for n.tif: it must be float: the file holds floats");
+    for wrong in [Encoding::Snorm, Encoding::Biased] {
+        let expected = std::format!(
+            "encoding is {wrong}, for n.tif: it must be float, or unorm if they lie between 0 and 1: the file holds floats"
+        );
         assert_eq!(normals_error(&path, &encoding(wrong)), expected);
     }
     // Halves become the same floats, doubles the nearest: 0x2e66 is 1638 / 16384.
@@ -164,6 +166,23 @@ fn floats_pass_as_they_are() {
     let path = tiff(&folder, [1, 1], 2, 64, 3, [0.1f64, -7.5].iter().flat_map(|v| v.to_le_bytes()).collect());
     assert_reads(&path, &default(), Encoding::Float, Channels::Xy, CodesRef::F32(&[0.1, -7.5]));
     assert_eq!(open_normals(&path, &default()).unwrap().warnings, ["its 64-bit floats are rounded to 32 bits"]);
+}
+
+#[test]
+fn floats_between_0_and_1_may_be_read_as_unorm() {
+    let folder = Folder::new();
+    // 0.1 is 13421773 / 2^27, of which 2v - 1 is -13421772.75 / 2^24, to be rounded; beyond [0, 1] it goes on.
+    let floats = [0.5, 0.75, 1.0, 0.1, 0.0, 1.5];
+    let components = CodesRef::F32(&[0.0, 0.5, 1.0, -13_421_773.0 / 16_777_216.0, -1.0, 2.0]);
+    let path = tiff(&folder, [2, 1], 3, 32, 3, floats.iter().flat_map(|v: &f32| v.to_le_bytes()).collect());
+    assert_reads(&path, &encoding(Encoding::Unorm), Encoding::Float, Channels::Xyz, components);
+    let layer: &[_] = &[("R", [0.5f32, 0.1]), ("G", [0.75, 0.0]), ("B", [1.0, 1.5])];
+    let path = exr(&folder, &[layer]);
+    assert_reads(&path, &encoding(Encoding::Unorm), Encoding::Float, Channels::Xyz, components);
+    // Two of three samples.
+    let two = NormalReadOptions { channels: Some(Channels::Xy), ..encoding(Encoding::Unorm) };
+    let components = CodesRef::F32(&[0.0, 0.5, -13_421_773.0 / 16_777_216.0, -1.0]);
+    assert_reads(&path, &two, Encoding::Float, Channels::Xy, components);
 }
 
 #[test]
@@ -202,8 +221,8 @@ fn exr_channels_go_by_their_names() {
     let twice = [("M.X", one), ("M.Y", two), ("M.Z", three), ("N.X", one), ("N.Y", two), ("N.Z", three)];
     let message = refused(&[&[&colours[..], &twice].concat()], &default());
     assert!(message.contains("not clear which of its channels hold the normals: C.B, C.G, C.R, M.X"), "{message}");
-    let message = refused(&[rgb], &encoding(Encoding::Unorm));
-    assert_eq!(message, "encoding is unorm, for n.exr: it must be float: the file holds floats");
+    let message = refused(&[rgb], &encoding(Encoding::Snorm));
+    assert!(message.starts_with("encoding is snorm, for n.exr: it must be float, or unorm "), "{message}");
 }
 
 #[test]
