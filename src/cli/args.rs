@@ -101,7 +101,8 @@ pub struct ParallaxArguments {
     #[arg(long, value_parser = choice::<Depth>(Depth::NAMES), help_heading = PARALLAX_MAP)]
     pub bits: Option<Depth>,
 
-    /// Write what a shader needs beside the output, under its name with the extension json
+    /// Write what a shader needs beside the output, under its name with the extension json; no file but one of these is
+    /// replaced
     #[arg(long, help_heading = PARALLAX_MAP)]
     pub json: bool,
 
