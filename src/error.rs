@@ -71,6 +71,21 @@ pub enum Error {
         remedy: String,
     },
 
+    /// A file can be read in several ways, or not in the one that was asked for: an option decides.
+    #[error("{}: {reason}; {remedy} --{option} {values}", path.display())]
+    Unclear {
+        /// The file.
+        path: PathBuf,
+        /// What is not clear, or not so.
+        reason: String,
+        /// What to do, with the option.
+        remedy: &'static str,
+        /// The option, as the command line names it where there is one such file.
+        option: &'static str,
+        /// Values for it.
+        values: &'static str,
+    },
+
     /// A file claims a size above the limit; nothing was allocated for it.
     #[error(
         "{}: the header claims {width} x {height} texels, {bytes} bytes decoded, above the limit of {limit}; \
@@ -138,6 +153,15 @@ impl Error {
     /// A file that cannot be used, why, and what to do about it.
     pub(crate) fn file(path: impl Into<PathBuf>, reason: impl ToString, remedy: impl Into<String>) -> Self {
         Self::File { path: path.into(), reason: reason.to_string(), remedy: remedy.into() }
+    }
+
+    /// A file that an option with one of these values makes clear.
+    pub(crate) fn unclear(
+        path: impl Into<PathBuf>,
+        reason: impl ToString,
+        (remedy, option, values): (&'static str, &'static str, &'static str),
+    ) -> Self {
+        Self::Unclear { path: path.into(), reason: reason.to_string(), remedy, option, values }
     }
 
     /// Threads that the system refused.

@@ -1,18 +1,20 @@
 //! Two normal maps that become one.
 
-use super::heights::HeightWatch;
 use super::job::create_folder_of;
+use super::mask::MaskInput;
 use super::normals::{Degenerate, NormalInput};
 use super::outcome::Outcome;
 use super::report::{RunReport, as_text};
+use super::role::{Role, check_same_size};
 use super::targets::{self, Files};
 use crate::baker::{Baker, Blended};
 use crate::error::{Error, Result};
-use crate::io::{ReadOptions, create_normals};
+use crate::io::create_normals;
 use crate::map::{NormalFormat, Size};
 use crate::ops::blend::{BlendInputs, BlendOptions};
 use crate::stream::{Monitor, NormalRows};
 use serde::Serialize;
+use std::cell::Cell;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -31,15 +33,6 @@ pub struct BlendJob {
     pub options: BlendOptions,
     /// Where it runs.
     pub baker: Arc<Baker>,
-}
-
-/// A mask file, and how it is read.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct MaskInput {
-    /// The file.
-    pub path: PathBuf,
-    /// Its channel, and the like.
-    pub read: ReadOptions,
 }
 
 /// What became of a blend.
@@ -83,13 +76,16 @@ impl BlendJob {
         if let Some(refusal) = targets::refusals(std::slice::from_ref(&files)).into_iter().flatten().next() {
             return BlendOutcome { outcome: Outcome::unopened(refusal), inputs: Default::default() };
         }
-        let layers = [self.base.watch(), self.detail.watch()];
+        let layers = [self.base.watch(Role::Base), self.detail.watch(Role::Detail)];
         let outcome = Outcome::of(&files, |warnings| {
-            let mask = self.mask.as_ref().map(|mask| HeightWatch::new(&mask.path, &mask.read));
+            let mask = self.mask.as_ref().map(MaskInput::watch);
+            let cut = Cell::new(None);
             let open = || {
                 let [base, detail] = [layers[0].open()?, layers[1].open()?];
+                let mask = mask.as_ref().map(|mask| mask.open()).transpose()?;
+                self.check_sizes(base.size(), detail.size(), mask.as_ref().map(|mask| mask.size()))?;
                 self.check_tile(&base, &detail)?;
-                let mask = mask.as_ref().map(|mask| mask.open(false)).transpose()?;
+                cut.set(Some([detail.size(), base.size()]));
                 opened(base.size());
                 Ok(BlendInputs { base, detail, mask })
             };
@@ -100,13 +96,38 @@ impl BlendJob {
             let blended = self.baker.blend_rows(&open, &create, &self.options, monitor);
             let all_read = blended.is_ok();
             warnings.extend(layers.iter().flat_map(|layer| layer.warnings(all_read)));
-            warnings.extend(mask.iter().flat_map(|mask| mask.named_warnings()));
+            warnings.extend(mask.iter().flat_map(|mask| mask.warnings(all_read)));
+            warnings.extend(cut.get().filter(|_| all_read).and_then(|[detail, base]| self.cut(detail, base)));
             warnings.extend(blended.as_ref().ok().and_then(inexact_weights));
             blended
         });
         let facts =
             |index: usize| LayerFacts { format: layers[index].format(), degenerate: layers[index].degenerate() };
         BlendOutcome { outcome, inputs: [facts(0), facts(1)] }
+    }
+
+    /// Fails if a map does not lie over the first one texel by texel.
+    fn check_sizes(&self, base: Size, detail: Size, mask: Option<Size>) -> Result<()> {
+        let first = (self.base.path.as_path(), base);
+        if !self.options.tile {
+            let remedy = "give a map of the same size, or repeat a smaller one over the first with --tile";
+            check_same_size(first, (&self.detail.path, detail), remedy)?;
+        }
+        let mask = self.mask.as_ref().zip(mask);
+        mask.map_or(Ok(()), |(mask, size)| check_same_size(first, (&mask.path, size), "give a mask of the same size"))
+    }
+
+    /// Says so if the map that tiles does not end with the first one.
+    fn cut(&self, detail: Size, base: Size) -> Option<String> {
+        let sides =
+            [("right", detail.width(), base.width(), "width"), ("bottom", detail.height(), base.height(), "height")];
+        let cut = sides.into_iter().filter(|(_, detail, base, _)| base % detail != 0);
+        let cut: Vec<String> = cut
+            .map(|(edge, detail, base, side)| {
+                format!("at the {edge} edge (its {side} {detail} does not divide {base})")
+            })
+            .collect();
+        (!cut.is_empty()).then(|| format!("{}: it is cut {}", self.detail.path.display(), cut.join(" and ")))
     }
 
     /// Fails if the second map has to be held in memory, and is above the limit.
@@ -187,7 +208,7 @@ pub struct FormatReport {
 /// The weights that a blend used.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct UsedWeights {
-    /// Both, as integers or ratios: `1,-1/2`.
+    /// Both, as integers, short decimals or ratios: `1,-0.5`.
     pub used: String,
     /// Whether they are those that were asked for.
     pub exact: bool,

@@ -48,16 +48,12 @@ impl<'a> HeightWatch<'a> {
             let words = if beyond == 1 { ["height", "lies", "counts"] } else { ["heights", "lie", "count"] };
             let [heights, lie, count] = words;
             warnings.push(format!(
-                "{beyond} {heights} {lie} outside 0 to 1 and {count} as 0 or 1 in the parallax map: shift and divide \
-                 them, and multiply --scale by the same number"
+                "{beyond} {heights} {lie} outside 0 to 1 and {count} as 0 or 1 in the parallax map: export the map \
+                 with heights from 0 to 1, or bring those from MIN to MAX there with gdal_translate -ot Float32 \
+                 -scale MIN MAX 0 1, and multiply --scale by MAX - MIN"
             ));
         }
         warnings
-    }
-
-    /// What looks wrong, each with the name of the file: for work on several.
-    pub fn named_warnings(&self) -> Vec<String> {
-        self.warnings(false).into_iter().map(|text| format!("{}: {text}", self.path.display())).collect()
     }
 }
 

@@ -3,6 +3,7 @@
 use super::heights::HeightWatch;
 use super::normals::NormalInput;
 use super::outcome::Outcome;
+use super::role::{Role, check_same_size};
 use super::targets::{self, Files};
 use crate::baker::{Baked, Baker};
 use crate::error::{Error, Result};
@@ -132,11 +133,14 @@ impl Job {
         else {
             return Err(Error::parameter("maps", "other maps", "parallax alone, where a normal map is given"));
         };
-        let (heights, normals) = (HeightWatch::new(&self.input, &self.read), normals.watch());
+        let given = &normals.path;
+        let (heights, normals) = (HeightWatch::new(&self.input, &self.read), normals.watch(Role::GivenNormals));
         let open = || {
-            let rows = heights.open(true)?;
+            let (rows, normals) = (heights.open(true)?, normals.open()?);
+            let remedy = "give the normal map of these heights";
+            check_same_size((&self.input, rows.size()), (given, normals.size()), remedy)?;
             opened(rows.size());
-            Ok((rows, normals.open()?))
+            Ok((rows, normals))
         };
         let create = |size| {
             // A scale out of range is told before there is a file.

@@ -1,9 +1,10 @@
 //! Normal maps on their way into another map.
 
+use super::role::Role;
 use crate::error::{Error, Result};
 use crate::inspect::{Census, Counted};
 use crate::io::{NormalReadOptions, open_normals};
-use crate::map::{CodesMut, NormalFormat, Size};
+use crate::map::{Channels, CodesMut, NormalFormat, Size};
 use crate::stream::{NormalRows, NormalSource, check_components};
 use serde::Serialize;
 use std::cell::{Cell, RefCell};
@@ -37,21 +38,23 @@ pub struct Degenerate {
 /// What is known of a normal map that is read.
 pub(super) struct NormalWatch<'a> {
     input: &'a NormalInput,
+    role: Role,
     warnings: RefCell<Vec<String>>,
     format: Cell<Option<NormalFormat>>,
     census: RefCell<Option<Arc<Mutex<Census>>>>,
 }
 
 impl NormalInput {
-    pub(super) fn watch(&self) -> NormalWatch<'_> {
-        NormalWatch { input: self, warnings: RefCell::default(), format: Cell::default(), census: RefCell::default() }
+    pub(super) fn watch(&self, role: Role) -> NormalWatch<'_> {
+        let (warnings, format, census) = Default::default();
+        NormalWatch { input: self, role, warnings, format, census }
     }
 }
 
 impl NormalWatch<'_> {
     /// Opens the map; what was counted before belongs to another try.
     pub fn open(&self) -> Result<NormalRows> {
-        let file = open_normals(&self.input.path, &self.input.read)?;
+        let file = open_normals(&self.input.path, &self.input.read).map_err(|error| self.role.named(error))?;
         *self.warnings.borrow_mut() = file.warnings;
         self.format.set(Some(file.rows.format()));
         let (rows, census) = Counted::new(file.rows);
@@ -81,16 +84,31 @@ impl NormalWatch<'_> {
 
     /// What looks wrong, each with the name of the file; counts mean something only if all rows were read.
     pub fn warnings(&self, all_read: bool) -> Vec<String> {
-        let found = self.degenerate().warning().filter(|_| all_read);
+        let degenerate = self.degenerate();
+        let hint = self.hint(&degenerate).unwrap_or_else(|| "texbake check says more".into());
+        let found = degenerate.warning(&hint).filter(|_| all_read);
         let warnings = self.warnings.borrow();
         let texts = warnings.iter().chain(&found);
         texts.map(|text| format!("{}: {text}", self.input.path.display())).collect()
     }
+
+    /// What to do where z is at or below zero nearly everywhere: an xy map in a file of three channels has no z.
+    fn hint(&self, degenerate: &Degenerate) -> Option<String> {
+        let is_xyz = self.format.get().is_some_and(|format| format.channels == Channels::Xyz);
+        let option = self.role.option("channels");
+        let hint = || format!("if the map holds x and y alone, as xy maps in PNG do, read it with --{option} xy");
+        (is_xyz && degenerate.raised() >= degenerate.texels.div_ceil(10) * 9).then(hint)
+    }
 }
 
 impl Degenerate {
-    /// One line about what was found, and what it means for the result.
-    fn warning(&self) -> Option<String> {
+    /// Texels of which z counts as the least above zero.
+    fn raised(&self) -> u64 {
+        self.below_zero + self.at_zero + self.zero_vectors
+    }
+
+    /// One line about what was found, what it means for the result, and what to do.
+    fn warning(&self, hint: &str) -> Option<String> {
         let counts = [
             (self.below_zero, "z below zero"),
             (self.at_zero, "z of zero"),
@@ -99,10 +117,10 @@ impl Degenerate {
         ];
         let found = counts.iter().filter(|(count, _)| *count > 0);
         let found: Vec<String> = found.map(|(count, what)| format!("{count} with {what}")).collect();
-        let is_raised = self.below_zero + self.at_zero + self.zero_vectors > 0;
-        let raised = if is_raised { " (z counts as the least above zero where it is not above it)" } else { "" };
+        let raised =
+            if self.raised() > 0 { " (z counts as the least above zero where it is not above it)" } else { "" };
         let (texels, found) = (self.texels, Some(found.join(", ")).filter(|found| !found.is_empty())?);
-        Some(format!("{texels} normals, of them {found}{raised}; texbake check says more"))
+        Some(format!("{texels} normals, of them {found}{raised}; {hint}"))
     }
 }
 

@@ -1,10 +1,13 @@
 //! What a shader needs to know of a parallax map.
 
 use super::{Job, Outcome};
+use crate::error::{Error, Result};
 use crate::exact::AxisScale;
 use crate::map::{Depth, Encoding, ParallaxFormat, Size};
 use serde::Serialize;
+use std::io::ErrorKind;
 use std::num::NonZeroU32;
+use std::path::Path;
 
 /// The numbers of a parallax map for a shader: how its codes are read, and how far they move texture coordinates.
 ///
@@ -24,7 +27,14 @@ pub struct ParallaxNumbers {
     pub welsh: WelshNumbers,
     /// The steps in a shader (FGED2 listing 7.9); `eye` is the unit tangent-space vector to the eye.
     pub shader: String,
+    /// Which way x and y point.
+    pub axes: &'static str,
 }
+
+/// The axes of FGED2 listing 7.9: those of tangent space, in which the normal map's vectors are too.
+const AXES: &str = "x of eye and of the offset is along the tangent, in which u increases, and y along the second axis of \
+     tangent space, in which v increases (FGED2 listing 7.9): with green up, that is up the image; where v grows down \
+     the rows, change the sign of the offset's y";
 
 /// A parallax map for a shader: what lies beside it as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -90,11 +100,13 @@ impl ParallaxNumbers {
             iterations: iterations.get(),
             u: over(|r, k| 2.0 * k * r),
             decode: Decoding::of(format),
-            welsh: WelshNumbers { scale: over(|r, _| r), bias: over(|r, _| -2.0 * r) },
+            // Plus zero: no number is -0.
+            welsh: WelshNumbers { scale: over(|r, _| r), bias: over(|r, _| -2.0 * r).map(|bias| bias + 0.0) },
             shader: format!(
                 "vec2 step = eye.xy * u; for (int i = 0; i < {iterations}; i++) {{ uv += step * (texture(map, uv).r * \
                  multiply + add); }}"
             ),
+            axes: AXES,
         }
     }
 }
@@ -112,6 +124,29 @@ impl ParallaxSidecar {
             bits: format.depth.to_string(),
             numbers: ParallaxNumbers::of(job, outcome, iterations)?,
         })
+    }
+}
+
+/// What every sidecar has, and hardly another file.
+const KEYS: [&str; 3] = ["scale_in_texels", "decode", "welsh"];
+
+impl ParallaxSidecar {
+    /// Fails if something else than a sidecar is at `path`, a name that nobody has written: it would be lost.
+    ///
+    /// # Errors
+    /// [`Error::File`]; [`Error::Io`] if what is there cannot be read.
+    pub fn check_place(path: &Path) -> Result<()> {
+        let bytes = match std::fs::read(path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+            Err(error) => return Err(Error::io(path)(error)),
+        };
+        let content: Option<serde_json::Value> = serde_json::from_slice(&bytes).ok();
+        if content.is_some_and(|content| KEYS.iter().all(|key| content.get(key).is_some())) {
+            return Ok(());
+        }
+        let remedy = "move it away, or give the output another name";
+        Err(Error::file(path, "the sidecar would overwrite this file, which texbake did not write", remedy))
     }
 }
 

@@ -46,7 +46,9 @@ impl<T> Outcome<T> {
     pub(super) fn failure(&self, what: impl std::fmt::Display) -> Option<String> {
         match self.result.as_ref().err()? {
             Error::Cancelled => None,
-            error @ (Error::Io { .. } | Error::File { .. } | Error::TooLarge { .. }) => Some(error.to_string()),
+            error @ (Error::Io { .. } | Error::File { .. } | Error::Unclear { .. } | Error::TooLarge { .. }) => {
+                Some(error.to_string())
+            }
             error => Some(format!("{what}: {error}")),
         }
     }

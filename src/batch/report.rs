@@ -131,7 +131,7 @@ pub struct RunReport {
 /// The options of a file as text.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Options {
-    /// The scale as it was given: `7/3`, or `2 x 2 by 1/10 high`.
+    /// The scale as it was given: `7/3`, or `2 x 2 by 0.1 high`.
     pub scale: String,
     /// The slope stencil.
     pub filter: String,
@@ -168,7 +168,7 @@ pub struct Options {
 /// The scale that a bake used, in texels.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct UsedScale {
-    /// Along the rows: an integer or a ratio.
+    /// Along the rows: an integer, a short decimal or a ratio.
     pub x: String,
     /// Down the rows.
     pub y: String,

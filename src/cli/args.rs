@@ -4,7 +4,7 @@ use super::settings::{CodeChoice, Device, HeightInput, NormalOutput, Settings, S
 use super::values::{ByteSize, WeightPair, choice, iterations, value};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::{NonZeroU32, NonZeroUsize};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use texbake::batch::{MapKind, NameTemplate, OUTPUT_EXTENSIONS};
 use texbake::io::Channel;
 use texbake::{Channels, Convention, Depth, Encoding, Precision, Rational};
@@ -20,7 +20,8 @@ Examples:
   texbake blend base_normal.png detail_normal.png -o normal.png --tile
   texbake devices
 
-Exit status: 0 all went well, 1 something failed, 2 wrong arguments or settings, 130 interrupted.")]
+Exit status: 0 all went well, 1 something failed, 2 wrong arguments or
+settings, 130 interrupted.")]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -42,10 +43,11 @@ pub enum Command {
 #[command(after_help = "\
 Examples:
   texbake normal height.png -o normal.png --scale 24
-  texbake normal dem.tif -o normal.exr --scale 3.5 --edge clamp --filter scharr --convention dx
+  texbake normal dem.tif -o normal.exr --scale 3.5 --edge clamp
+  texbake normal wall.png -o normal.png --filter scharr --convention dx
   texbake normal wall.png -o normal.png --size 2.0x2.0 --depth 0.1 --bits 16
-  texbake normal srtm.tif -o normal.png --size 108000x108000 --depth 65535 --edge clamp   (metres)
-  texbake normal terrain.raw --raw 1025x1025:u16le -o normal.tif --edge clamp")]
+  texbake normal m.tif -o n.png --size 90000x90000 --depth 65535 --edge clamp
+  texbake normal terrain.raw --raw 1025x1025:u16le -o n.tif --edge clamp")]
 pub struct NormalArguments {
     /// Height map: PNG, TIFF, EXR, TGA, BMP, JPEG, WebP, or any file with --raw
     #[arg(value_name = "INPUT")]
@@ -65,18 +67,20 @@ pub struct NormalArguments {
 /// Bake one height map into a parallax map, n_z (2h - 1)
 #[derive(Args, Debug)]
 #[command(after_help = "\
-A PNG has no signed numbers: it holds biased codes, of which 128 (or 32768) is exactly zero, and
-v = (code - 128) / 127. TIFF holds snorm codes, EXR floats.
+A PNG has no signed numbers: it holds biased codes, of which 128 (or 32768) is
+exactly zero, and v = (code - 128) / 127. TIFF holds snorm codes, EXR floats.
+In the unorm codes of a given normal map 128 (or 32768) reads as exactly 0.
 
-What a shader needs goes into --json and --report: for each axis u = s / (2 k r) (FGED2 eq. 7.52),
-with the scale s in texels, k iterations and r texels of the map; and, to use the height map itself,
-Welsh's scale s / r and bias -s / (2 r). Welsh's text has the bias s / 2; the minus of his programs
-is right: a height of 1/2 must move nothing.
+What a shader needs goes into --json and --report: for each axis
+u = s / (2 k r) (FGED2 eq. 7.52), with the scale s in texels, k iterations and
+r texels of the map; and, to use the height map itself, Welsh's scale s / r
+and bias -s / (2 r). Welsh's text has the bias s / 2; the minus of his
+programs is right: a height of 1/2 must move nothing.
 
 Examples:
   texbake parallax height.png -o parallax.png --scale 24
   texbake parallax height.png -o parallax.png --scale 24 --iterations 4 --json
-  texbake parallax height.png -o parallax.tif --scale 24 --bits 16 --normal normal.png")]
+  texbake parallax height.png -o p.tif --scale 24 --bits 16 --normal n.png")]
 pub struct ParallaxArguments {
     /// Height map: PNG, TIFF, EXR, TGA, BMP, JPEG, WebP, or any file with --raw
     #[arg(value_name = "INPUT")]
@@ -97,7 +101,8 @@ pub struct ParallaxArguments {
     #[arg(long, value_parser = choice::<Depth>(Depth::NAMES), help_heading = PARALLAX_MAP)]
     pub bits: Option<Depth>,
 
-    /// Write what a shader needs beside the output, under its name with the extension json
+    /// Write what a shader needs beside the output, under its name with the extension json; no file but one of these is
+    /// replaced
     #[arg(long, help_heading = PARALLAX_MAP)]
     pub json: bool,
 
@@ -143,12 +148,15 @@ impl ParallaxArguments {
 /// Bake folders of height maps into a folder of normal maps, parallax maps, or both in one pass
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Folders are searched for files such as wall_height.png, wall_disp_2k.exr or Wall_Displacement.tif;
-files are taken as they are. tex/brick/wall_height_2k.png becomes brick/wall_normal_2k.png in --out.
+Folders are searched for files such as wall_height.png, wall_disp_2k.exr or
+Wall_Displacement.tif; files are taken as they are. In --out,
+tex/brick/wall_height_2k.png becomes brick/wall_normal_2k.png.
 
-Each setting comes from the command line, else from the last [[override]] in texbake.toml that has
-it and whose glob matches the file's path below the folder, else from [defaults]. A key is the name
-of an option:
+Each setting comes from the command line, else from the last [[override]] in
+texbake.toml that has it and whose glob matches the file's path below the
+folder, else from [defaults]. A --format on the command line also takes the
+place of bits and encodings in texbake.toml that it cannot hold. A key is the
+name of an option:
 
   suffix = [\"_height\", \"_dem\"]
   [defaults]
@@ -159,13 +167,14 @@ of an option:
   edge = \"clamp\"
   maps = \"normal\"
 
-What a shader needs to know of a parallax map goes into the --report; see texbake parallax --help.
+What a shader needs to know of a parallax map goes into the --report; see
+texbake parallax --help.
 
 Examples:
   texbake bake textures --out baked
   texbake bake textures --out baked --maps normal,parallax --scale 24
-  texbake bake textures --out baked --scale 24 --convention dx --format tif --bits 16
-  texbake bake dem_1.tif dem_2.tif --out baked --edge clamp --report report.json")]
+  texbake bake textures --out baked --convention dx --format tif --bits 16
+  texbake bake dem_1.tif dem_2.tif --out baked --edge clamp --report r.json")]
 pub struct BakeArguments {
     /// Folders to search, and files
     #[arg(required = true, value_name = "PATH")]
@@ -187,6 +196,10 @@ pub struct BakeArguments {
     /// Files baked at the same time, each with its own rows in memory [default: one more than the cores]
     #[arg(short, long, value_name = "N", help_heading = "Where it runs")]
     pub jobs: Option<NonZeroUsize>,
+
+    /// Steps towards the eye that a shader takes through a parallax map, for the numbers in --report
+    #[arg(long, value_name = "K", default_value = "4", value_parser = iterations, help_heading = PARALLAX_MAP)]
+    pub iterations: NonZeroU32,
 
     #[command(flatten)]
     pub each: PerFile,
@@ -226,8 +239,13 @@ pub struct PerFile {
 }
 
 impl PerFile {
-    /// These settings, and those of `weaker` where these say nothing.
+    /// These settings, and those of `weaker` where these say nothing; a format here leaves no encoding and bits from
+    /// there that it cannot hold.
     pub fn or(self, weaker: &Self) -> Self {
+        let weaker = &match &self.format {
+            Some(format) => weaker.held_by(format),
+            None => weaker.clone(),
+        };
         let CodeChoice { encoding, bits } = self.parallax().or(weaker.parallax());
         Self {
             maps: self.maps.or_else(|| weaker.maps.clone()),
@@ -239,6 +257,15 @@ impl PerFile {
         }
     }
 
+    /// These settings without what files of this format cannot hold.
+    fn held_by(&self, format: &str) -> Self {
+        let output = Path::new("map").with_extension(format);
+        let CodeChoice { encoding, bits } = self.parallax().held_by(&output);
+        let normal = self.settings.normal.held_by(&output);
+        let settings = Settings { normal, ..self.settings.clone() };
+        Self { parallax_encoding: encoding, parallax_bits: bits, settings, ..self.clone() }
+    }
+
     /// What was set of a parallax map's codes.
     pub fn parallax(&self) -> CodeChoice {
         CodeChoice { encoding: self.parallax_encoding, bits: self.parallax_bits }
@@ -248,23 +275,28 @@ impl PerFile {
 /// Blend two normal maps into one
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Methods, from the normals (x1, y1, z1) and (x2, y2, z2); all results are normalised:
-  weighted            (a x1/z1 + b x2/z2, a y1/z1 + b y2/z2, 1), FGED2 eq. 7.46: as if the height
-                      maps were added with weights a and b; a negative weight takes bumps away
+Methods, from the normals (x1, y1, z1) and (x2, y2, z2); then normalised:
+  weighted            (a x1/z1 + b x2/z2, a y1/z1 + b y2/z2, 1), FGED2
+                      eq. 7.46: as if the height maps were added with weights
+                      a and b; a negative weight takes bumps away
   add                 the same with a = b = 1, FGED2 eq. 7.47
-  partial-derivative  the same, a = b = 1 unless given; the name is from Blending in Detail
+  partial-derivative  the same, a = b = 1 unless given; the name is from
+                      Blending in Detail
   linear              (x1 + x2, y1 + y2, z1 + z2)
   overlay             v1 + v2 (1 - |v1|) for each component v
   udn                 (x1 + x2, y1 + y2, z1)
   whiteout            (x1 + x2, y1 + y2, z1 z2)
-  rnm                 the second normal turned as the first one is from (0, 0, 1)
-The last five are approximations, to compare with (Hill and Barré-Brisebois, Blending in Detail).
+  rnm                 the second normal turned as the first is from (0, 0, 1)
+The last five are approximations, to compare with (Hill and Barré-Brisebois,
+Blending in Detail).
 
-Where z is not above zero it counts as the least above zero; such texels are counted and reported.
+In unorm codes 128 (or 32768) reads as exactly 0, so that a flat map changes
+nothing. Where z is not above zero it counts as the least above zero; such
+texels are counted and reported.
 
 Examples:
   texbake blend base_normal.png detail_normal.png -o normal.png --tile
-  texbake blend a.png b.png -o out.png --weights 1,-0.5       (takes half of b's bumps away)
+  texbake blend a.png b.png -o out.png --weights 1,-0.5   (half of b away)
   texbake blend a.png b.png -o out.png --transition 0.25
   texbake blend a.png b.png -o out.png --mask mask.png
   texbake blend a.png dx.tif -o out.tif --detail-convention dx
@@ -327,7 +359,8 @@ pub struct Formula {
     #[arg(long, help_heading = BLEND)]
     pub tile: bool,
 
-    /// exact: the same bytes everywhere, correctly rounded; fast: native floats [default: exact]
+    /// exact: the same bytes everywhere, and correctly rounded for 8- and 16-bit maps; floats are computed as IEEE f32 in
+    /// a fixed order. fast: native floats [default: exact]
     #[arg(long, value_parser = choice::<Precision>(Precision::NAMES), help_heading = BLEND)]
     pub precision: Option<Precision>,
 }

@@ -7,7 +7,6 @@ use super::interruptible;
 use super::print::{file_table, put, say, summary};
 use super::progress::{Progress, Verbosity};
 use super::settings::{CodeChoice, Place, open_baker};
-use super::values::USUAL_ITERATIONS;
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -44,7 +43,7 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     let outcomes = progress.during(|| run(&jobs, at_once, &monitor, &|event| progress.watch(&jobs, event)));
     let time = start.elapsed();
 
-    let report = Report::new(&jobs, &outcomes, time, &errors, settings, USUAL_ITERATIONS);
+    let report = Report::new(&jobs, &outcomes, time, &errors, settings, arguments.iterations);
     if !reporting.quiet {
         put(file_table(&jobs, &outcomes));
         put(summary(&report.totals, &jobs, &outcomes));
@@ -108,7 +107,12 @@ impl Chosen {
 /// The format of a parallax map; here its options have longer names.
 fn parallax(codes: CodeChoice, output: &Path) -> texbake::Result<ParallaxFormat> {
     codes.parallax(output).map_err(|error| match error {
-        Error::Parameter { value, range, .. } => Error::Parameter { parameter: "parallax-bits", value, range },
+        Error::Parameter { parameter: "bits", value, range } => {
+            Error::Parameter { parameter: "parallax-bits", value, range }
+        }
+        Error::Parameter { parameter: "encoding", value, range } => {
+            Error::Parameter { parameter: "parallax-encoding", value, range }
+        }
         error => error,
     })
 }

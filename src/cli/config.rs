@@ -221,8 +221,8 @@ mod tests {
         };
         let expected = |scale: &str, bits: &str| (scale.to_owned(), "sobel".to_owned(), bits.to_owned());
         assert_eq!(settings("wall.png"), expected("24", ""));
-        assert_eq!(settings("dem_1.png"), expected("7/20", "16"));
-        assert_eq!(settings("a/b/dem_1.png"), expected("7/20", "16"));
+        assert_eq!(settings("dem_1.png"), expected("0.35", "16"));
+        assert_eq!(settings("a/b/dem_1.png"), expected("0.35", "16"));
         assert_eq!(settings("a/dem_x.png"), expected("7/3", "16"));
         assert_eq!(config.suffixes, Some(vec!["_dem".to_owned()]));
         let paths = ["a/dem_x.png".into()];

@@ -22,7 +22,11 @@ pub struct ParallaxTelling<'a> {
 pub fn bake_one(job: Job, telling: &ParallaxTelling<'_>, reporting: &Reporting) -> Result<Exit, Failure> {
     let jobs = [job];
     let mut files = Job::all_files(&jobs);
-    let sidecar = telling.sidecar.map(|path| JsonFile::create("sidecar", path, &files, None)).transpose()?;
+    let create = |path| {
+        let file = JsonFile::create("sidecar", path, &files, None)?;
+        ParallaxSidecar::check_place(path).map(|()| file)
+    };
+    let sidecar = telling.sidecar.map(create).transpose()?;
     files[0].outputs.extend(telling.sidecar);
     let report_file = reporting.report.as_deref().map(|path| JsonFile::create("report", path, &files, None));
     let report_file = report_file.transpose()?;

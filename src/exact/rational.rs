@@ -10,7 +10,7 @@ use std::str::FromStr;
 /// use texbake::Rational;
 ///
 /// assert_eq!("0.35".parse::<Rational>()?, "7/20".parse()?);
-/// assert_eq!("1.5e-3".parse::<Rational>()?.to_string(), "3/2000");
+/// assert_eq!("1.5e-3".parse::<Rational>()?.to_string(), "0.0015");
 /// assert!("one".parse::<Rational>().is_err());
 /// # Ok::<(), texbake::Error>(())
 /// ```
@@ -111,11 +111,22 @@ fn decimal(text: &str) -> Option<(i128, i128)> {
     Some(if shift < 0 { (numerator, power) } else { (numerator * power, 1) })
 }
 
+/// Decimals of at most this many places are written as such; what is longer, or never ends, as a ratio.
+const MOST_PLACES: u32 = 6;
+
 impl fmt::Display for Rational {
+    /// `24`, `0.35`, `-12.8`, or `7/3`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.denominator {
-            1 => write!(f, "{}", self.numerator),
-            denominator => write!(f, "{}/{denominator}", self.numerator),
+        let places = (0..=MOST_PLACES).find(|&places| 10i64.pow(places) % self.denominator == 0);
+        match places {
+            Some(0) => write!(f, "{}", self.numerator),
+            Some(places) => {
+                let unit = 10i128.pow(places);
+                let parts = i128::from(self.numerator) * (unit / i128::from(self.denominator));
+                let (sign, parts) = (if parts < 0 { "-" } else { "" }, parts.abs());
+                write!(f, "{sign}{}.{:0width$}", parts / unit, parts % unit, width = places as usize)
+            }
+            None => write!(f, "{}/{}", self.numerator, self.denominator),
         }
     }
 }
@@ -152,6 +163,29 @@ mod tests {
         ] {
             let number: Rational = text.parse().unwrap();
             assert_eq!((number.numerator(), number.denominator()), (numerator, denominator), "{text}");
+        }
+    }
+
+    #[test]
+    fn short_decimals_print_as_such_and_others_as_ratios() {
+        for (text, printed) in [
+            ("24", "24"),
+            ("3/2", "1.5"),
+            ("64/5", "12.8"),
+            ("-0.1", "-0.1"),
+            ("-1/16", "-0.0625"),
+            ("1e-6", "0.000001"),
+            ("1e-7", "1/10000000"),
+            ("1/128", "1/128"),
+            ("1/3", "1/3"),
+            ("-7/6", "-7/6"),
+            ("100", "100"),
+            ("0", "0"),
+            ("99999999999999999.5", "99999999999999999.5"),
+        ] {
+            let number: Rational = text.parse().unwrap();
+            assert_eq!(number.to_string(), printed);
+            assert_eq!(printed.parse::<Rational>().unwrap(), number, "{text}");
         }
     }
 

@@ -144,7 +144,7 @@ fn too_steep(scale: impl ToString) -> Error {
 }
 
 impl fmt::Display for Scale {
-    /// `7/3`, or `2 x 2 by 1/10 high`.
+    /// `7/3`, or `2 x 2 by 0.1 high`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Texels(scale) => scale.fmt(f),
@@ -154,7 +154,7 @@ impl fmt::Display for Scale {
 }
 
 impl fmt::Display for AxisScale {
-    /// `256/5`, or `256/5,128/5` for x and y.
+    /// `51.2`, or `51.2,25.6` for x and y.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y] = [self.x, self.y].map(|part| Rational::new(part.into(), self.q.into()).unwrap_or(0.into()));
         if x == y { x.fmt(f) } else { write!(f, "{x},{y}") }

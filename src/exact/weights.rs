@@ -63,7 +63,7 @@ fn offset(weight: Rational, q: i64) -> f64 {
 }
 
 impl fmt::Display for Weights {
-    /// `1,-1/2`.
+    /// `1,-0.5`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [base, detail] =
             [self.base, self.detail].map(|part| Rational::new(part.into(), self.q.into()).unwrap_or(0.into()));

@@ -88,26 +88,31 @@ pub(super) struct HeightRows {
 impl Pick {
     /// The rule for a file of `layout`.
     fn new(path: &Path, layout: Layout, channel: Option<&Channel>) -> Result<Self> {
-        let lacks = |what: String, remedy: &str| Err(Error::file(path, what, remedy));
+        let lacks =
+            |what: String, remedy: &'static str, values| Err(Error::unclear(path, what, (remedy, "channel", values)));
         let index = match channel {
             None if layout.colours == 1 => 0,
             None => return Ok(Self::Equal),
             Some(Channel::A) if layout.alpha => layout.colours,
-            Some(Channel::A) => return lacks("it has no alpha channel".into(), "choose another --channel"),
+            Some(Channel::A) => {
+                return lacks("it has no alpha channel".into(), "choose another with", "r, g, b or luma");
+            }
             Some(Channel::Named(name)) => {
                 let what = format!("channels have names in EXR files only, and {name} was asked for");
-                return lacks(what, "choose r, g, b, a or luma with --channel");
+                return lacks(what, "choose one with", "r, g, b, a or luma");
             }
             Some(Channel::R | Channel::G | Channel::B | Channel::Luma) if layout.colours == 1 => 0,
             Some(Channel::Luma) if layout.colours == 3 => return Ok(Self::Luma),
             Some(Channel::Luma) => {
                 let what = format!("it has {} channels, and luma needs red, green and blue", layout.colours);
-                return lacks(what, "choose one with --channel");
+                return lacks(what, "choose one with", "r or g");
             }
             Some(Channel::R) => 0,
             Some(Channel::G) => 1,
             Some(Channel::B) if layout.colours > 2 => 2,
-            Some(Channel::B) => return lacks("it has two channels, and no third".into(), "choose another --channel"),
+            Some(Channel::B) => {
+                return lacks("it has two channels, and no third".into(), "choose another with", "r or g");
+            }
         };
         Ok(Self::One(index))
     }
@@ -305,5 +310,5 @@ fn channels_differ<T: Texel>(path: &Path, column: usize, row: usize, colours: &[
     let values: Vec<String> = colours.iter().map(T::to_string).collect();
     let values = values.join(", ");
     let reason = format!("its channels differ, first at column {column}, row {row}: {values}");
-    Error::file(path, reason, "choose the one that holds the heights with --channel r, g, b, a or luma")
+    Error::unclear(path, reason, ("choose one with", "channel", "r, g, b, a or luma"))
 }

@@ -29,7 +29,8 @@ pub(super) enum OutputFormat {
 pub const INPUT_EXTENSIONS: [&str; 12] =
     ["png", "tif", "tiff", "exr", "tga", "bmp", "jpg", "jpeg", "webp", "raw", "r16", "r32"];
 
-const KNOWN_INPUTS: &str = "texbake reads PNG, TIFF, EXR, TGA, BMP, JPEG and WebP, and headerless files with --raw";
+const KNOWN_INPUTS: &str =
+    "texbake reads PNG, TIFF, EXR, TGA, BMP, JPEG and WebP, and headerless height maps with --raw";
 const KNOWN_OUTPUTS: &str = "texbake writes .png, .tif, .tiff and .exr";
 
 impl FileFormat {

@@ -208,9 +208,36 @@ pub fn create_parallax(path: &Path, size: Size, format: ParallaxFormat) -> Resul
     create_codes(path, size, format.texel())
 }
 
-fn create_codes(path: &Path, size: Size, format: TexelFormat) -> Result<RowsOut> {
+/// Fails if a normal map file called `path` cannot hold `format`; nothing is looked up or created.
+///
+/// # Errors
+/// [`crate::Error::Parameter`], or [`crate::Error::File`] for an unknown extension, as [`create_normals`].
+pub fn check_normal_format(path: &Path, format: NormalFormat) -> Result<()> {
+    check_codes(path, format.texel()).map(drop)
+}
+
+/// Fails if a parallax map file called `path` cannot hold `format`; nothing is looked up or created.
+///
+/// # Errors
+/// As [`check_normal_format`].
+pub fn check_parallax_format(path: &Path, format: ParallaxFormat) -> Result<()> {
+    check_codes(path, format.texel()).map(drop)
+}
+
+/// The format of the file `path`, which can hold `format`.
+fn check_codes(path: &Path, format: TexelFormat) -> Result<OutputFormat> {
     format.check()?;
-    match OutputFormat::of(path)? {
+    let output = OutputFormat::of(path)?;
+    match output {
+        OutputFormat::Png => png::check(path, format)?,
+        OutputFormat::Tiff => tiff::check(path, format)?,
+        OutputFormat::Exr => exr::check(path, format)?,
+    }
+    Ok(output)
+}
+
+fn create_codes(path: &Path, size: Size, format: TexelFormat) -> Result<RowsOut> {
+    match check_codes(path, format)? {
         OutputFormat::Png => png::create(path, size, format),
         OutputFormat::Tiff => tiff::create(path, size, format),
         OutputFormat::Exr => exr::create(path, size, format),

@@ -135,12 +135,14 @@ fn channels(path: &Path, layout: Layout, asked: Option<Channels>) -> Result<Chan
         (3.., None) => Ok(Channels::Xyz),
         (3.., Some(asked)) => Ok(asked),
         (2, None | Some(Channels::Xy)) => Ok(Channels::Xy),
-        (2, Some(Channels::Xyz)) => Err(Error::file(path, "it has two channels, and no z", "read it with channels xy")),
+        (2, Some(Channels::Xyz)) => {
+            Err(Error::unclear(path, "it has two channels, and no z", ("read it with", "channels", "xy")))
+        }
         // The only two-channel type of some formats is grey with alpha.
         (_, Some(Channels::Xy)) if layout.alpha => Ok(Channels::Xy),
         (_, _) if layout.alpha => {
-            let remedy = "read it with channels xy if they hold x and y";
-            Err(Error::file(path, "it has one channel and alpha: a height map?", remedy))
+            let remedy = ("if they hold x and y, read it with", "channels", "xy");
+            Err(Error::unclear(path, "it has one channel and alpha: a height map?", remedy))
         }
         _ => {
             let remedy = "give a normal map, or bake one from the heights with texbake normal";

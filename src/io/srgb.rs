@@ -3,8 +3,8 @@
 use crate::map::{HeightType, Heights};
 
 /// What the user should know about a file that says it is sRGB and is read as data.
-pub(super) const WARNING: &str = "the file says that its codes are sRGB colours; they are read as heights, unconverted. \
-     If they really were converted to sRGB, use --color-space srgb";
+pub(super) const WARNING: &str = "the file says that its codes are sRGB colours; they are read as they are, unconverted. \
+     If they really were converted to sRGB, export them as linear data, or decode a height map with --color-space srgb";
 
 /// The 16-bit linear code of each sRGB code.
 pub(super) struct SrgbTable(Vec<u16>);

@@ -144,7 +144,7 @@ fn masks_and_methods_go_together() {
 #[test]
 fn weights_out_of_range_are_refused() {
     let map = flat_map(3, 3, UNORM8);
-    for (a, b, named) in [("65536", "1", "65536"), ("1", "-65535.5", "-131071/2"), ("-1e9", "1", "-1000000000")] {
+    for (a, b, named) in [("65536", "1", "65536"), ("1", "-65535.5", "-65535.5"), ("-1e9", "1", "-1000000000")] {
         assert_eq!(
             refusal(&pair(&map, &map), &blend_options(weighted(a, b), UNORM8)),
             format!("weights is {named}: it must be between -65535 and 65535")

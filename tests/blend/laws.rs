@@ -323,7 +323,7 @@ fn a_transition_ends_in_each_map() {
             }
         }
     }
-    let refused = [("-1/7", "transition is -1/7"), ("1.01", "transition is 101/100")];
+    let refused = [("-1/7", "transition is -1/7"), ("1.01", "transition is 1.01")];
     for (t, start) in refused {
         let error = BlendMethod::transition(crate::support::number(t)).expect_err("out of range").to_string();
         assert_eq!(error, format!("{start}: it must be between 0 and 1"));

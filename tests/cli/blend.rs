@@ -212,7 +212,89 @@ fn a_mask_is_a_transition_of_each_texel() {
     folder.run(&[&["blend", "a.png", "b.png", "-o", "out.png", "-q"], &by_channel[..]].concat()).ends(0);
     assert_blended(&folder, "out.png", (&a, &b, Some(&mask)), &options);
     let run = folder.run(&["blend", "a.png", "b.png", "-o", "x.png", "--mask", "rgb.png"]).ends(1);
-    run.says("error: rgb.png: its channels differ", &["column 0, row 0"]);
+    assert_eq!(
+        run.stderr,
+        "error: rgb.png: its channels differ, first at column 0, row 0: 3, 0, 200; choose one with --mask-channel r, g, \
+         b, a or luma\n"
+    );
+    let by_alpha = ["--mask", "rgb.png", "--mask-channel", "a"];
+    let run = folder.run(&[&["blend", "a.png", "b.png", "-o", "x.png"], &by_alpha[..]].concat()).ends(1);
+    run.line("error: rgb.png: it has no alpha channel; choose another with --mask-channel r, g, b or luma");
+}
+
+#[test]
+fn a_mask_that_is_the_same_everywhere_gives_a_warning() {
+    let folder = Folder::new();
+    base(&folder, "a.png", 3, 2);
+    base(&folder, "b.png", 3, 2);
+    let grey_alpha: Vec<u8> = (0..6).flat_map(|i| [255, 40 * i]).collect();
+    folder.file("m.png", super::support::png(3, 2, png::ColorType::GrayscaleAlpha, png::BitDepth::Eight, &grey_alpha));
+    let blend = |arguments: &[&str]| {
+        folder.run(&[&["blend", "a.png", "b.png", "-o", "n.png", "--mask"], arguments].concat()).ends(0)
+    };
+    blend(&["m.png"]).line(
+        "warning: m.png: the mask is the same everywhere: is it in the alpha channel? Then read it with --mask-channel a",
+    );
+    blend(&["m.png", "--mask-channel", "g"]).line("the same everywhere: is it in another channel? See --mask-channel");
+    let run = blend(&["m.png", "--mask-channel", "a"]);
+    assert!(!run.stderr.contains("warning"), "{}", run.stderr);
+    // One that varies between rows alone.
+    folder.grey16("rows.png", 3, 2, |_, y| y as u16);
+    let run = blend(&["rows.png"]);
+    assert!(!run.stderr.contains("warning"), "{}", run.stderr);
+}
+
+#[test]
+fn options_of_the_inputs_are_called_by_their_names() {
+    let folder = Folder::new();
+    base(&folder, "a.png", 3, 2);
+    let grey_alpha = super::support::png(3, 2, png::ColorType::GrayscaleAlpha, png::BitDepth::Eight, &[9; 12]);
+    folder.file("ga.png", grey_alpha);
+    let reason = "error: ga.png: it has one channel and alpha: a height map?; if they hold x and y, read it with";
+    for (inputs, option) in [(["ga.png", "a.png"], "--base-channels xy"), (["a.png", "ga.png"], "--detail-channels xy")]
+    {
+        let run = folder.run(&[&["blend", "-o", "n.png"], &inputs[..]].concat()).ends(1);
+        assert_eq!(run.stderr, format!("{reason} {option}\n"));
+    }
+    let run = folder.run(&["blend", "a.png", "a.png", "-o", "n.png", "--detail-encoding", "snorm"]).ends(1);
+    run.line("detail-encoding is snorm, for a.png: it must be unorm or biased");
+    folder.grey8("h.png", 3, 2, bumps8);
+    let run = folder.run(&["parallax", "h.png", "-o", "p.png", "--normal", "ga.png"]).ends(1);
+    assert_eq!(run.stderr, format!("{reason} --normal-channels xy\n"));
+}
+
+#[test]
+fn a_map_without_z_is_told_from_one_that_is_wrong_here_and_there() {
+    let folder = Folder::new();
+    base(&folder, "a.png", 5, 4);
+    folder.run(&["blend", "a.png", "a.png", "-o", "xy.png", "--channels", "xy", "-q"]).ends(0);
+    for (inputs, option) in [(["xy.png", "a.png"], "--base-channels xy"), (["a.png", "xy.png"], "--detail-channels xy")]
+    {
+        let run = folder.run(&[&["blend", "-o", "n.png"], &inputs[..]].concat()).ends(0);
+        let hint = format!("; if the map holds x and y alone, as xy maps in PNG do, read it with {option}");
+        run.says("warning: xy.png: 20 normals, of them 20 with z below zero", &[&hint]);
+        // The advice is good.
+        let [option, xy] = [option.split(' ').next().unwrap(), "xy"];
+        let run = folder.run(&[&["blend", "-o", "n.png", option, xy], &inputs[..]].concat()).ends(0);
+        assert!(!run.stderr.contains("warning"), "{}", run.stderr);
+    }
+}
+
+#[test]
+fn a_map_that_is_cut_where_it_tiles_gives_a_warning() {
+    let folder = Folder::new();
+    base(&folder, "a.png", 12, 9);
+    base(&folder, "b.png", 5, 3);
+    base(&folder, "c.png", 24, 2);
+    base(&folder, "d.png", 4, 3);
+    let blend = |detail| folder.run(&["blend", "a.png", detail, "-o", "n.png", "--tile"]).ends(0);
+    blend("b.png").line("warning: b.png: it is cut at the right edge (its width 5 does not divide 12)");
+    blend("c.png").line(
+        "warning: c.png: it is cut at the right edge (its width 24 does not divide 12) and at the bottom edge (its \
+         height 2 does not divide 9)",
+    );
+    let run = blend("d.png");
+    assert!(!run.stderr.contains("warning"), "{}", run.stderr);
 }
 
 #[test]
@@ -237,7 +319,7 @@ fn a_blend_is_reported() {
         json!({
             "version": env!("CARGO_PKG_VERSION"), "base": layer("a.png", "8"), "detail": layer("b.png", "16"),
             "mask": null, "mask_channel": null, "output": "out/n.png", "method": "weighted",
-            "weights": { "used": "1,-1/2", "exact": true }, "tile": false,
+            "weights": { "used": "1,-0.5", "exact": true }, "tile": false,
             "format": { "encoding": "unorm", "bits": "8", "channels": "xyz", "convention": "gl" },
             "precision": "exact", "result": "baked", "error": null, "warnings": [], "backend": "cpu",
             "adapter": "reference, 1 thread", "reason": "asked for", "fallback": null, "width": 6, "height": 4,
@@ -328,13 +410,13 @@ fn mistakes_are_refused_with_the_way_out() {
         (
             1,
             &["a.png", "wide.png"],
-            "a.png and wide.png: size of the second map is 7 x 4: it must be 6 x 4, as the first map's; to repeat a \
-             smaller one over the first, tile it (--tile)",
+            "wide.png: it is 7 x 4, and a.png is 6 x 4; give a map of the same size, or repeat a smaller one over the \
+             first with --tile",
         ),
         (
             1,
             &["a.png", "b.png", "--mask", "height.png"],
-            "a.png and b.png: size of the mask is 7 x 4: it must be 6 x 4, as the first map's",
+            "height.png: it is 7 x 4, and a.png is 6 x 4; give a mask of the same size",
         ),
         (
             1,
@@ -349,12 +431,12 @@ fn mistakes_are_refused_with_the_way_out() {
         (
             1,
             &["a.png", "b.png", "--base-encoding", "float"],
-            "encoding is float, for a.png: it must be unorm or biased",
+            "base-encoding is float, for a.png: it must be unorm or biased",
         ),
         (2, &["a.png", "b.png", "--weights", "65536,1"], "--weights is 65536: it must be between -65535 and 65535"),
         (2, &["a.png", "b.png", "--weights", "1"], "it must be two numbers, as 1,-0.5 or 1/3,2/3"),
-        (2, &["a.png", "b.png", "--transition", "1.5"], "--transition is 3/2: it must be between 0 and 1"),
-        (2, &["a.png", "b.png", "--transition", "-0.1"], "--transition is -1/10: it must be between 0 and 1"),
+        (2, &["a.png", "b.png", "--transition", "1.5"], "--transition is 1.5: it must be between 0 and 1"),
+        (2, &["a.png", "b.png", "--transition", "-0.1"], "--transition is -0.1: it must be between 0 and 1"),
         (
             2,
             &["a.png", "b.png", "--mask", "mask.png", "--method", "linear"],
@@ -373,7 +455,7 @@ fn mistakes_are_refused_with_the_way_out() {
         (
             2,
             &["a.png", "b.png", "--transition", "1/2", "--method", "add"],
-            "--transition is 1/2: it must be left out with --method add, whose weights are 1,1 (see --method weighted)",
+            "--transition is 0.5: it must be left out with --method add, whose weights are 1,1 (see --method weighted)",
         ),
         (
             2,

@@ -99,9 +99,37 @@ fn unknown_extensions_and_formats_name_the_known_ones() {
         let run = folder.run(&["normal", "height.png", "-o", output]).ends(1);
         run.says(&format!("error: {output}"), &[reason, "texbake writes .png"]);
     }
-    let run = folder.run(&["normal", "height.png", "-o", "normal.png", "--encoding", "snorm"]).ends(1);
-    run.says("error: ", &["snorm"]);
+    let run = folder.run(&["normal", "height.png", "-o", "normal.png", "--encoding", "snorm"]).ends(2);
+    run.says("error: --encoding is snorm with 8 bits, for normal.png: ", &["unorm or biased in PNG"]);
     assert_eq!(folder.files("."), ["height.png"]);
+}
+
+#[test]
+fn what_a_format_cannot_hold_is_known_before_anything_runs() {
+    let folder = Folder::new();
+    folder.grey8("tex/h.png", 3, 3, bumps8);
+    // Not even the inputs are looked at.
+    let cases: [(&[&str], &str); 6] = [
+        (
+            &["normal", "gone.png", "-o", "n.exr", "--bits", "16"],
+            "--encoding is unorm with 16 bits, for n.exr: it must be float with 16f or 32f bits in EXR",
+        ),
+        (&["normal", "gone.png", "-o", "n.tif", "--bits", "16f"], "--encoding is float with 16f bits, for n.tif"),
+        (&["parallax", "gone.png", "-o", "p.png", "--encoding", "snorm"], "for p.png: it must be biased in PNG"),
+        (&["blend", "gone.png", "gone.png", "-o", "n.png", "--bits", "32f"], "--encoding is float with 32f bits"),
+        (
+            &["bake", "tex", "--suffix", "h", "--out", "o", "--format", "exr", "--bits", "8"],
+            "--encoding is unorm with 8 bits, for normal.exr",
+        ),
+        (
+            &["bake", "tex", "--suffix", "h", "--out", "o", "--maps", "parallax", "--parallax-encoding", "snorm"],
+            "--parallax-encoding is snorm with 8 bits, for parallax.png: it must be biased in PNG",
+        ),
+    ];
+    for (arguments, message) in cases {
+        folder.run(arguments).ends(2).says("error: ", &[message]);
+    }
+    assert_eq!(folder.files("."), ["tex/h.png"]);
 }
 
 #[test]

@@ -56,7 +56,7 @@ fn what_help_shows_works() {
     let folder = Folder::new();
     folder.grey8("height.png", 8, 8, bumps8);
     folder.grey8("mask.png", 8, 8, bumps8);
-    for name in ["normal.png", "a.png", "b.png", "base_normal.png", "detail_normal.png", "dx.tif"] {
+    for name in ["normal.png", "a.png", "b.png", "base_normal.png", "detail_normal.png", "dx.tif", "n.png"] {
         folder.run(&["normal", "height.png", "-o", name, "--scale", "3", "-q"]).ends(0);
     }
     for (command, count) in [("parallax", 3), ("blend", 6)] {
@@ -76,14 +76,25 @@ fn what_help_shows_works() {
 #[test]
 fn written_lines_of_help_fit_the_usual_width() {
     let folder = Folder::new();
-    // What is written by hand below the options: the same at 100 columns, where nobody says how wide it is, and at 110.
+    // What is written by hand below the options: the same at 80 columns, which many terminals have, and at 110.
     let text = |command: &str, columns: &str| {
         let output = folder.command(&[command, "--help"]).env("COLUMNS", columns).output().unwrap();
         let help = String::from_utf8(output.stdout).unwrap();
         help.split_once("--quiet").unwrap().1.to_owned()
     };
     for command in ["normal", "parallax", "bake", "blend"] {
-        assert_eq!(text(command, "100"), text(command, "110"), "{command}");
+        assert_eq!(text(command, "80"), text(command, "110"), "{command}");
+    }
+}
+
+#[test]
+fn help_says_what_codes_and_precision_mean() {
+    let folder = Folder::new();
+    for command in ["blend", "parallax"] {
+        let help = folder.run(&[command, "--help"]).ends(0).stdout;
+        let words = help.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains("128 (or 32768) reads as exactly 0"), "{help}");
+        assert!(words.contains("correctly rounded for 8- and 16-bit maps; floats are computed as IEEE f32"), "{help}");
     }
 }
 

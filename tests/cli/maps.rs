@@ -149,6 +149,13 @@ fn the_report_has_what_a_shader_needs() {
     assert_eq!(a["parallax"]["u"], json!([0.046875, 0.09375]));
     assert_eq!(a["parallax"]["welsh"], json!({ "scale": [0.375, 0.75], "bias": [-0.1875, -0.375] }));
     assert_eq!(a["parallax"]["decode"]["code"], "max((code - 128) / 127, -1)");
+    assert!(a["parallax"]["axes"].as_str().unwrap().contains("where v grows down the rows, change the sign"), "{a}");
+
+    let eight = ["bake", "tex", "--out", "out", "-q", "--report", "r.json", "--iterations", "8"];
+    folder.run(&eight).ends(0);
+    let a = &folder.json("r.json")["files"][0];
+    assert_eq!((&a["options"]["iterations"], &a["parallax"]["iterations"]), (&json!(8), &json!(8)));
+    assert_eq!(a["parallax"]["u"], json!([0.0234375, 0.046875]));
 }
 
 #[test]

@@ -90,6 +90,9 @@ fn a_sidecar_tells_a_shader_what_it_needs() {
         "u": [0.046875, 0.09375],
         "welsh": { "scale": [0.375, 0.75], "bias": [-0.1875, -0.375] },
         "shader": shader,
+        "axes": "x of eye and of the offset is along the tangent, in which u increases, and y along the second axis of \
+                 tangent space, in which v increases (FGED2 listing 7.9): with green up, that is up the image; where v \
+                 grows down the rows, change the sign of the offset's y",
     });
     let mut sidecar = folder.json("out/stones.v2.json");
     let decode = sidecar.as_object_mut().unwrap().remove("decode").unwrap();
@@ -175,8 +178,9 @@ fn heights_beyond_the_range_are_counted() {
     folder.file("h.raw", heights.map(f32::to_le_bytes).concat());
     for output in ["p.png", "p.tif", "p.exr"] {
         let run = folder.run(&["parallax", "h.raw", "--raw", "2x4:f32le", "-o", output, "--report", "r.json"]).ends(0);
-        let warning = "3 heights lie outside 0 to 1 and count as 0 or 1 in the parallax map: shift and divide them, and \
-                       multiply --scale by the same number";
+        let warning = "3 heights lie outside 0 to 1 and count as 0 or 1 in the parallax map: export the map with \
+                       heights from 0 to 1, or bring those from MIN to MAX there with gdal_translate -ot Float32 \
+                       -scale MIN MAX 0 1, and multiply --scale by MAX - MIN";
         run.line(&format!("warning: h.raw: {warning}"));
         assert_eq!(folder.json("r.json")["files"][0]["warnings"], json!([warning]));
     }
@@ -214,7 +218,7 @@ fn mistakes_are_refused_with_the_way_out() {
         (
             1,
             &["h.png", "-o", "p.png", "--normal", "wide_normal.png"],
-            "h.png: size of the normal map is 5 x 3: it must be 4 x 3, as the first map's",
+            "wide_normal.png: it is 5 x 3, and h.png is 4 x 3; give the normal map of these heights",
         ),
         (2, &["h.png", "-o", "p.png", "--normal", "wide_normal.png", "--edge", "clamp"], "--edge <MODE>"),
         (2, &["h.png", "-o", "p.png", "--normal-channels", "xy"], "--normal <FILE>"),
@@ -240,6 +244,38 @@ fn mistakes_are_refused_with_the_way_out() {
     let run = folder.run(&["parallax", "h.png", "-o", "wide_normal.png", "--normal", "wide_normal.png"]).ends(1);
     run.says("error: wide_normal.png: the output of h.png would overwrite this input", &["choose another output"]);
     assert_eq!(folder.files("."), ["h.png", "p.json", "w.png", "wide.png", "wide_normal.png"]);
+}
+
+#[test]
+fn a_sidecar_takes_the_place_of_sidecars_alone() {
+    let folder = Folder::new();
+    folder.grey8("h.png", 4, 3, bumps8);
+    let bake = |scale: &str| folder.run(&["parallax", "h.png", "-o", "p.png", "--json", "-q", "--scale", scale]);
+    for other in ["", "{}", "{\"version\": \"1\"}", "[1, 2]", "notes"] {
+        folder.file("p.json", other);
+        let run = bake("2").ends(1);
+        assert_eq!(
+            run.stderr,
+            "error: p.json: the sidecar would overwrite this file, which texbake did not write; move it away, or give \
+             the output another name\n"
+        );
+        assert_eq!(std::fs::read_to_string(folder.path("p.json")).unwrap(), other);
+        assert_eq!(folder.files("."), ["h.png", "p.json"]);
+    }
+    std::fs::remove_file(folder.path("p.json")).unwrap();
+    for scale in ["2", "3"] {
+        bake(scale).ends(0);
+        assert_eq!(folder.json("p.json")["scale_in_texels"][0], json!(scale.parse::<f64>().unwrap()));
+    }
+}
+
+#[test]
+fn no_number_is_minus_zero() {
+    let folder = Folder::new();
+    folder.grey8("h.png", 4, 3, bumps8);
+    let run = folder.run(&["parallax", "h.png", "-o", "p.png", "--scale", "0", "--json"]).ends(0);
+    run.line("u = (0, 0) for 4 iterations; with the height map itself, scale (0, 0) and bias (0, 0)");
+    assert!(!std::fs::read_to_string(folder.path("p.json")).unwrap().contains("-0.0"));
 }
 
 #[test]

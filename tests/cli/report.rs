@@ -67,12 +67,12 @@ fn a_folder_is_reported_file_by_file() {
     assert_eq!([&files[2]["bytes_in"], &files[2]["bytes_out"]], [&json!(0); 2]);
     assert_eq!(files[2]["options"], options);
 
-    options["scale"] = "2 x 1 by 1/10 high".into();
+    options["scale"] = "2 x 1 by 0.1 high".into();
     options["bits"] = "16".into();
     options["channels"] = "xy".into();
     assert_eq!(files[1]["options"], options);
     // 0.1 over 2 / 4 and over 1 / 4.
-    assert_eq!(files[1]["scale"], json!({ "x": "1/5", "y": "2/5", "exact": true }));
+    assert_eq!(files[1]["scale"], json!({ "x": "0.2", "y": "0.4", "exact": true }));
     assert_eq!(files[1]["outputs"]["normal"], "out/b_normal_2k.png");
 }
 

@@ -1,7 +1,7 @@
 //! `texbake.toml` and its place behind the command line.
 
 use super::support::{Folder, bumps8};
-use texbake::{Edge, Edges, Filter, NormalOptions, Scale};
+use texbake::{Depth, Edge, Edges, Filter, NormalMap, NormalOptions, Scale};
 
 const SETTINGS: &str = "\
 [defaults]
@@ -111,6 +111,27 @@ fn an_override_for_nothing_gives_a_warning() {
     folder.file("tex/texbake.toml", "[[override]]\nglob = 'b_*'\nscale = 3\n");
     let run = folder.run(&["bake", "tex", "--out", "out"]).ends(0);
     run.says("warning: tex", &["no height map matches the override \"b_*\""]);
+}
+
+#[test]
+fn a_format_takes_the_place_of_codes_that_it_cannot_hold() {
+    let folder = Folder::new();
+    folder.grey8("tex/a_h.png", 3, 3, bumps8);
+    let codes = "bits = 16\nencoding = 'biased'\nparallax-bits = 16\nmaps = 'normal,parallax'\n";
+    folder.file("tex/texbake.toml", format!("[[override]]\nglob = 'a_*'\n{codes}"));
+    let baked = |format: &str| {
+        folder.run(&["bake", "tex", "--out", "out", "--format", format, "-q"]).ends(0);
+        let map = NormalMap::read(folder.path(&format!("out/a_normal.{format}"))).unwrap();
+        assert!(folder.path(&format!("out/a_parallax.{format}")).exists());
+        map.format().depth
+    };
+    assert_eq!([baked("exr"), baked("tif"), baked("png")], [Depth::Float32, Depth::Bits16, Depth::Bits16]);
+
+    // In one file they are at odds.
+    folder.file("tex/texbake.toml", format!("[defaults]\nformat = 'exr'\n[[override]]\nglob = 'a_*'\n{codes}"));
+    let run = folder.run(&["bake", "tex", "--out", "other"]).ends(2);
+    run.says("error: tex", &["texbake.toml: encoding is biased with 16 bits, for a_normal.exr: it must be float"]);
+    assert!(folder.files("other").is_empty());
 }
 
 #[test]

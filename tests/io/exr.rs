@@ -91,7 +91,7 @@ fn the_channel_with_the_heights_is_found_or_asked_for() {
 
     store(&[("first", one.clone()), ("second", two.clone())]);
     let message = read_error(&path, &default());
-    assert!(message.contains("it is not clear which of its channels holds the heights: first, second"), "{message}");
+    assert!(message.contains("it is not clear which of its channels is meant: first, second"), "{message}");
     assert!(message.contains("choose one by its name with --channel"), "{message}");
 
     store(&[("R", one.clone()), ("G", one.clone()), ("B", one.clone()), ("A", two.clone())]);

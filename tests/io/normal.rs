@@ -100,12 +100,15 @@ fn one_channel_is_no_normal_map() {
     }
     let path = png(&folder, [2, 1], ColorType::GrayscaleAlpha, BitDepth::Eight, &[1, 2, 3, 4]);
     let message = normals_error(&path, &default());
-    assert!(message.contains("one channel and alpha: a height map?; read it with channels xy"), "{message}");
+    assert!(
+        message.contains("one channel and alpha: a height map?; if they hold x and y, read it with --channels xy"),
+        "{message}"
+    );
     assert_reads(&path, &channels(Channels::Xy), Encoding::Unorm, Channels::Xy, CodesRef::U8(&[1, 2, 3, 4]));
 
     let path = tiff(&folder, [1, 1], 2, 8, 1, vec![1, 2]);
     let message = normals_error(&path, &channels(Channels::Xyz));
-    assert!(message.contains("it has two channels, and no z; read it with channels xy"), "{message}");
+    assert!(message.contains("it has two channels, and no z; read it with --channels xy"), "{message}");
 }
 
 #[test]

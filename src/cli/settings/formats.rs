@@ -3,10 +3,8 @@
 use crate::cli::values::choice;
 use clap::Args;
 use std::path::Path;
-use texbake::io::{default_format, default_parallax_format};
-use texbake::{
-    Channels, Codes, Convention, Depth, Encoding, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Result, Size,
-};
+use texbake::io::{check_normal_format, check_parallax_format, default_format, default_parallax_format};
+use texbake::{Channels, Convention, Depth, Encoding, NormalFormat, ParallaxFormat, Result};
 
 /// What was set of a normal map.
 #[derive(Args, Debug, Clone, Default, PartialEq)]
@@ -48,13 +46,20 @@ impl NormalOutput {
     /// The format of the normal map `output`.
     ///
     /// # Errors
-    /// [`texbake::Error::Parameter`] if encoding and bits do not go together; what the extension of `output` has to say.
+    /// [`texbake::Error::Parameter`] if encoding and bits do not go together, or `output` cannot hold them; what its
+    /// extension has to say.
     pub fn format(&self, output: &Path) -> Result<NormalFormat> {
         let (encoding, depth) = self.codes().resolve(default_format(output)?, Encoding::Unorm);
         let (channels, convention) = (self.channels.unwrap_or_default(), self.convention.unwrap_or_default());
         let format = NormalFormat { encoding, depth, channels, convention };
-        // A map of one texel is refused as every map would be.
-        NormalMap::new(Size::new(1, 1)?, format, Codes::zeroed(depth, channels.count())).map(|_| format)
+        check_normal_format(output, format).map(|()| format)
+    }
+
+    /// These settings without the encoding and bits that the file `output` cannot hold.
+    pub fn held_by(&self, output: &Path) -> Self {
+        let holds = |codes: CodeChoice| Self { encoding: codes.encoding, bits: codes.bits, ..Self::default() };
+        let CodeChoice { encoding, bits } = self.codes().filter(|codes| holds(codes).format(output).is_ok());
+        Self { encoding, bits, ..self.clone() }
     }
 
     fn codes(&self) -> CodeChoice {
@@ -71,16 +76,28 @@ impl CodeChoice {
         Self { encoding: self.encoding.or(encoding), bits: self.bits.or(bits) }
     }
 
+    /// This choice without the encoding and bits that the parallax map file `output` cannot hold.
+    pub fn held_by(self, output: &Path) -> Self {
+        self.filter(|codes| codes.parallax(output).is_ok())
+    }
+
+    /// Encoding and bits, each if it alone is possible.
+    fn filter(self, possible: impl Fn(Self) -> bool) -> Self {
+        Self {
+            encoding: self.encoding.filter(|_| possible(Self { bits: None, ..self })),
+            bits: self.bits.filter(|_| possible(Self { encoding: None, ..self })),
+        }
+    }
+
     /// The format of the parallax map `output`.
     ///
     /// # Errors
-    /// [`texbake::Error::Parameter`] if encoding and bits do not go together; what the extension of `output` has to say.
+    /// As [`NormalOutput::format`].
     pub fn parallax(self, output: &Path) -> Result<ParallaxFormat> {
         let usual = default_parallax_format(output)?;
         let (encoding, depth) = self.resolve((usual.encoding, usual.depth), Encoding::Snorm);
         let format = ParallaxFormat { encoding, depth };
-        // A map of one texel is refused as every map would be.
-        ParallaxMap::new(Size::new(1, 1)?, format, Codes::zeroed(depth, 1)).map(|_| format)
+        check_parallax_format(output, format).map(|()| format)
     }
 
     /// The file's `usual` encoding and bits where nothing else was set; float bits mean the encoding float, and integer

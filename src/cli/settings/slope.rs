@@ -8,8 +8,7 @@ use texbake::{Edges, Error, Filter, Precision, Rational, Result, Scale};
 #[derive(Args, Debug, Clone, Default, PartialEq)]
 pub struct Slope {
     /// Height of white (the code 255 or 65535, or the float 1) in widths of one texel: 24, 0.35, 7/3; negative for
-    /// depth maps [default: 1,
-    /// nearly flat; most tiling textures take 8 to 50]
+    /// depth maps [default: 1, nearly flat; most tiling textures take 8 to 50]
     #[arg(long, value_name = "NUMBER", value_parser = value::<Rational>, allow_hyphen_values = true)]
     #[arg(help_heading = HEADING, conflicts_with_all = ["size", "depth"])]
     pub scale: Option<Rational>,
@@ -31,7 +30,8 @@ pub struct Slope {
     #[arg(long, value_name = "MODE", value_parser = value::<Edges>, help_heading = HEADING)]
     pub edge: Option<Edges>,
 
-    /// exact: the same bytes everywhere, correctly rounded; fast: native floats [default: exact]
+    /// exact: the same bytes everywhere, and correctly rounded for 8- and 16-bit maps; floats are computed as IEEE f32 in
+    /// a fixed order. fast: native floats [default: exact]
     #[arg(long, value_parser = choice::<Precision>(Precision::NAMES), help_heading = HEADING)]
     pub precision: Option<Precision>,
 }

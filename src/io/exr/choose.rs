@@ -38,13 +38,14 @@ pub(super) fn choose(path: &Path, layers: &[Header], wanted: Wanted<'_>) -> Resu
     let names: Vec<String> =
         layers.iter().flat_map(|layer| &layer.channels.list).map(|channel| channel.name.to_string()).collect();
     let names = names.join(", ");
+    let by_name = ("choose one by its name with", "channel", "NAME");
     let (reason, remedy) = match wanted {
-        Wanted::Heights(None) => (
-            format!("it is not clear which of its channels holds the heights: {names}"),
-            "choose one by its name with --channel",
-        ),
+        Wanted::Heights(None) => {
+            let reason = format!("it is not clear which of its channels is meant: {names}");
+            return Err(Error::unclear(path, reason, by_name));
+        }
         Wanted::Heights(Some(channel)) => {
-            (format!("it has no channel {channel}, only {names}"), "choose one by its name with --channel")
+            return Err(Error::unclear(path, format!("it has no channel {channel}, only {names}"), by_name));
         }
         Wanted::Normals(Some(Channels::Xy)) => (
             format!("it is not clear which of its channels hold x and y: {names}"),

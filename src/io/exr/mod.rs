@@ -6,4 +6,4 @@ mod write;
 
 pub(super) use choose::Wanted;
 pub(super) use read::open;
-pub(super) use write::create;
+pub(super) use write::{check, create};

@@ -41,13 +41,7 @@ struct ExrEncoder {
 
 /// Creates an EXR with the channels R, G and B, or R and G, or Y alone, of half or float samples.
 pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box<dyn RowSink>> {
-    let sample_type = match format.depth {
-        Depth::Float16 => SampleType::F16,
-        Depth::Float32 => SampleType::F32,
-        Depth::Bits8 | Depth::Bits16 => {
-            return Err(cannot_hold(path, format, "float with 16f or 32f bits in EXR; PNG and TIFF hold integers"));
-        }
-    };
+    let sample_type = sample_type(path, format)?;
     // EXR sorts channels by name.
     let (layer, names, order): (_, &[&str], &'static [usize]) = match format.channels {
         1 => ("parallax", &["Y"], &[0]),
@@ -81,6 +75,21 @@ pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box
         headers,
     };
     Ok(FileSink::boxed(encoder, replacement, size, format))
+}
+
+/// Fails if an EXR cannot hold `format`.
+pub(crate) fn check(path: &Path, format: TexelFormat) -> Result<()> {
+    sample_type(path, format).map(drop)
+}
+
+fn sample_type(path: &Path, format: TexelFormat) -> Result<SampleType> {
+    match format.depth {
+        Depth::Float16 => Ok(SampleType::F16),
+        Depth::Float32 => Ok(SampleType::F32),
+        Depth::Bits8 | Depth::Bits16 => {
+            Err(cannot_hold(path, format, "float with 16f or 32f bits in EXR; PNG and TIFF hold integers"))
+        }
+    }
 }
 
 /// The bytes before the first block, with zeros for the table of offsets.

@@ -5,4 +5,4 @@ mod write;
 mod zlib;
 
 pub(super) use read::open;
-pub(super) use write::create;
+pub(super) use write::{check, create};

@@ -44,21 +44,7 @@ struct PngEncoder {
 /// Creates a PNG with 8 or 16 bits: grey for one channel, else RGB; xy maps leave blue 0, since PNG's only two-channel
 /// type means transparency.
 pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box<dyn RowSink>> {
-    let depth = match (format.encoding, format.depth) {
-        (Encoding::Unorm | Encoding::Biased, Depth::Bits8) => BitDepth::Eight,
-        (Encoding::Unorm | Encoding::Biased, Depth::Bits16) => BitDepth::Sixteen,
-        (Encoding::Snorm, _) => {
-            let remedy = match format.channels {
-                1 => "biased in PNG, which has no signed numbers; TIFF has them",
-                _ => "unorm or biased in PNG, which has no signed numbers; TIFF has them",
-            };
-            return Err(cannot_hold(path, format, remedy));
-        }
-        _ => {
-            let remedy = "unorm or biased with 8 or 16 bits in PNG; EXR and TIFF hold floats";
-            return Err(cannot_hold(path, format, remedy));
-        }
-    };
+    let depth = bit_depth(path, format)?;
     let replacement = Replacement::create(path)?;
     let [width, height] = [size.width(), size.height()].map(|side| side as u32);
     let mut encoder = Encoder::new(replacement.output()?, width, height);
@@ -86,6 +72,29 @@ pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box
         filtered: Vec::with_capacity(1 + row_bytes),
     };
     Ok(FileSink::boxed(encoder, replacement, size, format))
+}
+
+/// Fails if a PNG cannot hold `format`.
+pub(crate) fn check(path: &Path, format: TexelFormat) -> Result<()> {
+    bit_depth(path, format).map(drop)
+}
+
+fn bit_depth(path: &Path, format: TexelFormat) -> Result<BitDepth> {
+    match (format.encoding, format.depth) {
+        (Encoding::Unorm | Encoding::Biased, Depth::Bits8) => Ok(BitDepth::Eight),
+        (Encoding::Unorm | Encoding::Biased, Depth::Bits16) => Ok(BitDepth::Sixteen),
+        (Encoding::Snorm, _) => {
+            let remedy = match format.channels {
+                1 => "biased in PNG, which has no signed numbers; TIFF has them",
+                _ => "unorm or biased in PNG, which has no signed numbers; TIFF has them",
+            };
+            Err(cannot_hold(path, format, remedy))
+        }
+        _ => {
+            let remedy = "unorm or biased with 8 or 16 bits in PNG; EXR and TIFF hold floats";
+            Err(cannot_hold(path, format, remedy))
+        }
+    }
 }
 
 impl RowEncoder for PngEncoder {

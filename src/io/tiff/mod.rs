@@ -4,4 +4,4 @@ mod read;
 mod write;
 
 pub(super) use read::open;
-pub(super) use write::create;
+pub(super) use write::{check, create};

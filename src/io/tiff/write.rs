@@ -26,9 +26,7 @@ struct TiffEncoder {
 
 /// Creates a TIFF: 8 and 16-bit integers, signed for snorm, and 32-bit floats; one sample for each code of a texel.
 pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box<dyn RowSink>> {
-    if format.depth == Depth::Float16 {
-        return Err(cannot_hold(path, format, "float with 32f bits in TIFF; EXR holds 16f"));
-    }
+    check(path, format)?;
     let replacement = Replacement::create(path)?;
     let mut encoder = TiffEncoder { path: path.into(), output: replacement.output()?, size, format, big: false };
     // The directory and its strip table take less than a hundredth of the rows, or less than a MiB.
@@ -36,6 +34,14 @@ pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box
     encoder.big = whole + whole / 100 + (1 << 20) > u32::MAX.into();
     encoder.header(0).map_err(Error::io(path))?;
     Ok(FileSink::boxed(encoder, replacement, size, format))
+}
+
+/// Fails if a TIFF cannot hold `format`.
+pub(crate) fn check(path: &Path, format: TexelFormat) -> Result<()> {
+    match format.depth {
+        Depth::Float16 => Err(cannot_hold(path, format, "float with 32f bits in TIFF; EXR holds 16f")),
+        Depth::Bits8 | Depth::Bits16 | Depth::Float32 => Ok(()),
+    }
 }
 
 /// A directory entry: a tag and its values.
