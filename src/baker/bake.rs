@@ -127,10 +127,11 @@ impl Baker {
     /// Bakes rows from `open` into rows for `create` while they are read and written.
     ///
     /// A few bands are in memory at a time, however high the map. The exception is a map whose edge wraps from top to
-    /// bottom and whose source cannot seek ([`last_row_is_near`](crate::stream::RowSource::last_row_is_near): PNG), for a sink that cannot take row 0
-    /// last ([`takes_first_row_last`](crate::stream::RowSink::takes_first_row_last): EXR): its heights are held if they are no more than 64 MiB, else
-    /// decoded twice. What the source itself holds comes on top: [`crate::io::open_heights`] decodes some formats
-    /// whole.
+    /// bottom and whose source cannot seek ([`last_row_is_near`](crate::stream::RowSource::last_row_is_near): PNG), for
+    /// a sink that cannot take row 0 last
+    /// ([`takes_first_row_last`](crate::stream::RowSink::takes_first_row_last): EXR): its heights are held if they are
+    /// no more than 64 MiB, else decoded twice. What the source itself holds comes on top:
+    /// [`crate::io::open_heights`] decodes some formats whole.
     ///
     /// `create` makes a sink for each map that the options ask for. Both may be called again if a GPU fails and the
     /// job moves to the CPU; no row of the failed try is kept.
