@@ -179,7 +179,7 @@ fn long_weights_are_replaced() {
 #[test]
 fn floats_without_a_direction_are_named_by_position() {
     let flat = flat_map(3, 2, FLOAT32);
-    let message = "components must be between -65536 and 65536; texbake check --repair makes such texels flat";
+    let message = "components must be between -65536 and 65536; texbake check --repair -o FILE makes such texels flat";
     for (value, name) in [(f32::NAN, "NaN"), (f32::INFINITY, "inf"), (-65_537.0, "-65537"), (65_536.01, "65536.01")] {
         for (texel, channel, place) in [(1, 0, "column 1, row 0"), (5, 2, "column 2, row 1")] {
             let mut bits = Image::from(&flat).bits;

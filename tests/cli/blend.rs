@@ -390,7 +390,7 @@ fn a_float_that_is_no_direction_names_its_file() {
         assert_eq!(
             run.stderr,
             "error: bad.exr: the normal at column 0, row 1 has a component of NaN: components must be between -65536 \
-             and 65536; texbake check --repair makes such texels flat\n"
+             and 65536; texbake check --repair -o FILE makes such texels flat\n"
         );
     }
     assert_eq!(folder.files("."), ["bad.exr", "good.exr"]);

@@ -133,7 +133,7 @@ fn other_sizes_and_no_directions_are_refused() {
         assert_eq!(
             refusal(&normal_map(4, 3, FLOAT32, &bits)),
             "the normal at column 2, row 1 has a component of NaN: components must be between -65536 and 65536; \
-             texbake check --repair makes such texels flat"
+             texbake check --repair -o FILE makes such texels flat"
         );
     }
     assert_eq!(FORMATS.len(), parallax_formats().len());
