@@ -3,7 +3,6 @@
 use crate::error::Result;
 use crate::exact::CodeReading;
 use crate::map::{Channels, CodesMut, CodesRef, Depth, Encoding, NormalFormat, Size};
-use crate::ops::GREATEST_COMPONENT;
 use crate::stream::{Monitor, NormalSource};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -349,7 +348,7 @@ impl Rule {
 
     #[inline(always)]
     fn of_floats(&self, x: f32, y: f32, z: Option<f32>) -> Option<Oddity> {
-        let is_within = |component: f32| component.abs() <= GREATEST_COMPONENT;
+        let is_within = |component: f32| component.abs() <= NormalFormat::GREATEST_COMPONENT;
         if !(is_within(x) && is_within(y) && z.is_none_or(is_within)) {
             return Some(Oddity::NoDirection);
         }

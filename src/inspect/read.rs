@@ -3,7 +3,6 @@
 use crate::error::Result;
 use crate::exact::CodeReading;
 use crate::map::{Channels, CodesMut, CodesRef, Depth, NormalFormat, Size};
-use crate::ops::GREATEST_COMPONENT;
 use crate::stream::{LayerBands, LayerReader, LayerSource, Monitor, NormalSource};
 
 /// Bytes of a band: enough for a thread to be worth waking, little enough for a cache.
@@ -86,7 +85,8 @@ impl Components {
     fn read_floats<T: Copy>(&mut self, codes: &[T], float: impl Fn(T) -> f32) {
         self.read_with(codes, float);
         for ((x, y), z) in self.x.iter_mut().zip(&mut self.y).zip(&mut self.z) {
-            let has_direction = x.abs().max(y.abs()).max(z.abs()) <= GREATEST_COMPONENT && !(*x + *y + *z).is_nan();
+            let has_direction =
+                x.abs().max(y.abs()).max(z.abs()) <= NormalFormat::GREATEST_COMPONENT && !(*x + *y + *z).is_nan();
             [*x, *y, *z] = if has_direction { [*x, *y, *z] } else { [0.0, 0.0, 1.0] };
         }
     }

@@ -4,7 +4,6 @@ use super::census::{Census, Counted};
 use crate::baker::{Baker, Ran};
 use crate::error::Result;
 use crate::map::{CodesMut, Encoding, NormalFormat, Size};
-use crate::ops::GREATEST_COMPONENT;
 use crate::ops::blend::{BlendInputs, BlendMethod, BlendOptions};
 use crate::stream::{Monitor, NormalRows, NormalSource, RowsOut};
 use std::cell::RefCell;
@@ -134,7 +133,7 @@ impl NormalSource for Flattened {
 fn flatten<T: Copy>(codes: &mut [T], channels: usize, flat: [T; 3], float: impl Fn(T) -> f32) {
     for texel in codes.chunks_exact_mut(channels) {
         // NaN compares as not within.
-        if !texel.iter().all(|code| float(*code).abs() <= GREATEST_COMPONENT) {
+        if !texel.iter().all(|code| float(*code).abs() <= NormalFormat::GREATEST_COMPONENT) {
             texel.copy_from_slice(&flat[..channels]);
         }
     }

@@ -207,6 +207,9 @@ impl Edges {
 }
 
 impl NormalFormat {
+    /// The greatest magnitude of a float component; what is beyond it, or no number, is refused where maps are read.
+    pub const GREATEST_COMPONENT: f32 = 65_536.0;
+
     /// How a texel is stored.
     pub(crate) fn texel(&self) -> TexelFormat {
         TexelFormat { encoding: self.encoding, depth: self.depth, channels: self.channels.count() }

@@ -23,9 +23,6 @@ const SMALLEST: f32 = 1.0 / 33_554_432.0; // 2^-25
 /// The least z of a float normal; z at or below zero, too, counts as this.
 const LEAST_Z: f32 = 1.0 / 16_777_216.0; // 2^-24
 
-/// The greatest magnitude of a float component; what is beyond it, or no number, is refused where maps are read.
-pub(crate) const GREATEST_COMPONENT: f32 = 65_536.0;
-
 impl LayerReading {
     /// Reads a map of `format`, and gives green as `convention` says.
     pub fn new(format: NormalFormat, convention: Convention) -> Self {

@@ -10,5 +10,5 @@ pub mod parallax;
 mod precision;
 mod store;
 
-pub(crate) use layer::{GREATEST_COMPONENT, LayerReading, Vector, float_of_integers};
+pub(crate) use layer::{LayerReading, Vector, float_of_integers};
 pub use precision::Precision;

@@ -1,10 +1,9 @@
 //! Bands of several maps that lie over each other, for operations that look at one texel of each.
 
-use super::channel::{Recycling, recycling};
-use super::thread;
+use super::ahead::ReadAhead;
+use super::channel::Filling;
 use crate::error::Result;
 use crate::map::{Codes, CodesMut, CodesRef, Depth};
-use std::thread::{Builder, JoinHandle};
 
 /// The same rows of several maps.
 #[derive(Debug, Clone)]
@@ -70,9 +69,6 @@ impl LayerBands for MapLayers<'_> {
     }
 }
 
-/// Bands in flight besides the one in use: one being read, one waiting.
-const BUFFERS: usize = 3;
-
 /// The rows of a band, as they are read.
 struct LayerBuffer {
     rows: usize,
@@ -80,12 +76,7 @@ struct LayerBuffer {
 }
 
 /// The bands of several sources; a thread reads ahead.
-pub(crate) struct LayerReader {
-    /// `None` once nothing more is wanted.
-    bands: Option<Recycling<LayerBuffer>>,
-    current: Option<LayerBuffer>,
-    thread: Option<JoinHandle<Result<()>>>,
-}
+pub(crate) struct LayerReader(ReadAhead<LayerBuffer>);
 
 impl LayerReader {
     /// Reads `sources` of `height` rows in bands of `band_rows`.
@@ -94,10 +85,9 @@ impl LayerReader {
     /// [`crate::Error::Threads`].
     pub fn new(mut sources: Vec<Box<dyn LayerSource>>, height: usize, band_rows: usize) -> Result<Self> {
         assert!(band_rows > 0, "a band has rows");
-        let (bands, mut filled) = recycling::<LayerBuffer>(BUFFERS);
-        let read_all = move || {
+        let read_all = move |mut filling: Filling<LayerBuffer>| {
             for first in (0..height).step_by(band_rows) {
-                let Some(buffer) = filled.take() else { break };
+                let Some(buffer) = filling.take() else { break };
                 let rows = band_rows.min(height - first);
                 let room = || LayerBuffer {
                     rows,
@@ -107,43 +97,22 @@ impl LayerReader {
                 for (source, layer) in sources.iter_mut().zip(&mut buffer.layers) {
                     source.read(layer.as_mut())?;
                 }
-                filled.send(buffer);
+                filling.send(buffer);
             }
             Ok(())
         };
-        let thread = thread::start(Builder::new().name("texbake read".into()), read_all)?;
-        Ok(Self { bands: Some(bands), current: None, thread: Some(thread) })
+        ReadAhead::new(read_all).map(Self)
     }
 }
 
 impl LayerBands for LayerReader {
     fn next(&mut self) -> Result<Option<LayerBand<'_>>> {
-        let Some(bands) = &self.bands else { return Ok(None) };
-        if let Some(used) = self.current.take() {
-            bands.give_back(used);
-        }
-        self.current = bands.receive();
-        if self.current.is_none()
-            && let Some(thread) = self.thread.take()
-        {
-            thread::join(thread)?;
-        }
-        Ok(self.current.as_ref().map(LayerBuffer::band))
+        Ok(self.0.next()?.map(LayerBuffer::band))
     }
 }
 
 impl LayerBuffer {
     fn band(&self) -> LayerBand<'_> {
         LayerBand { rows: self.rows, layers: self.layers.iter().map(Codes::as_ref).collect() }
-    }
-}
-
-impl Drop for LayerReader {
-    /// Once it is gone the sources are closed: a thread that still reads is waited for.
-    fn drop(&mut self) {
-        self.bands = None;
-        if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
-        }
     }
 }

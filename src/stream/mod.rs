@@ -4,6 +4,7 @@
 //! Between them rows are cut into bands with a halo of one row and go through a backend. Reading, baking and writing
 //! overlap, and no stage holds more than a few bands.
 
+mod ahead;
 mod band;
 mod channel;
 mod layers;

@@ -6,7 +6,6 @@ use super::reader::RowSource;
 use crate::error::{Error, Result};
 use crate::map::{Codes, CodesMut, CodesRef, Depth, HeightMap, HeightType, Heights, HeightsMut, NormalFormat};
 use crate::map::{NormalMap, Size};
-use crate::ops::GREATEST_COMPONENT;
 
 /// A normal map that is read from the top.
 pub trait NormalSource: Send {
@@ -145,7 +144,7 @@ pub(crate) fn check_components(
     first_row: usize,
 ) -> Result<()> {
     // NaN compares as not within.
-    let is_within = |value: f32| value.abs() <= GREATEST_COMPONENT;
+    let is_within = |value: f32| value.abs() <= NormalFormat::GREATEST_COMPONENT;
     let found = match codes {
         CodesRef::U8(_) | CodesRef::U16(_) => None,
         CodesRef::F16(codes) => codes.iter().position(|code| !is_within(code.to_f32())).map(|i| (i, codes[i].to_f32())),

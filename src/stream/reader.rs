@@ -1,13 +1,12 @@
 //! Bands of a map that is read row by row, on a thread of its own.
 
+use super::ahead::ReadAhead;
 use super::band::{Band, HeightBand, HeightBands};
-use super::channel::{Recycling, recycling};
+use super::channel::Filling;
 use super::monitor::Monitor;
 use super::order::RowOrder;
-use super::thread;
 use crate::error::Result;
 use crate::map::{Edge, Grid, HeightMap, HeightType, HeightsMut, Size};
-use std::thread::{Builder, JoinHandle};
 
 /// A height map that is read from the top.
 pub trait RowSource: Send {
@@ -36,16 +35,8 @@ pub trait RowSource: Send {
     }
 }
 
-/// Bands in flight besides the one in use: one being read, one waiting.
-const BUFFERS: usize = 3;
-
 /// The bands of a [`RowSource`]; a thread reads ahead.
-pub(crate) struct BandReader {
-    /// `None` once nothing more is wanted.
-    bands: Option<Recycling<BandBuffer>>,
-    current: Option<BandBuffer>,
-    thread: Option<JoinHandle<Result<()>>>,
-}
+pub(crate) struct BandReader(ReadAhead<BandBuffer>);
 
 impl BandReader {
     /// Reads `source` in bands of `band_rows` rows; `edge` says what lies above the first row and below the last.
@@ -57,46 +48,24 @@ impl BandReader {
     pub fn new(source: Box<dyn RowSource>, edge: Edge, order: RowOrder, band_rows: usize) -> Result<Self> {
         assert!(band_rows > 0, "a band has rows");
         assert!(order == RowOrder::FromTop || edge == Edge::Wrap && source.size().height() > 1, "row 0 cannot be last");
-        let (bands, mut filled) = recycling(BUFFERS);
-        let read_all = move || {
+        let read_all = move |mut filling: Filling<BandBuffer>| {
             let mut cutter = BandCutter::new(source, edge, order)?;
-            while let Some(buffer) = filled.take() {
+            while let Some(buffer) = filling.take() {
                 let buffer = buffer.unwrap_or_else(|| cutter.buffer(band_rows));
                 match cutter.next(buffer, band_rows)? {
-                    Some(band) => filled.send(band),
+                    Some(band) => filling.send(band),
                     None => break,
                 }
             }
             Ok(())
         };
-        let thread = thread::start(Builder::new().name("texbake read".into()), read_all)?;
-        Ok(Self { bands: Some(bands), current: None, thread: Some(thread) })
+        ReadAhead::new(read_all).map(Self)
     }
 }
 
 impl HeightBands for BandReader {
     fn next(&mut self) -> Result<Option<HeightBand<'_>>> {
-        let Some(bands) = &self.bands else { return Ok(None) };
-        if let Some(used) = self.current.take() {
-            bands.give_back(used);
-        }
-        self.current = bands.receive();
-        if self.current.is_none()
-            && let Some(thread) = self.thread.take()
-        {
-            thread::join(thread)?;
-        }
-        Ok(self.current.as_ref().map(BandBuffer::band))
-    }
-}
-
-impl Drop for BandReader {
-    /// Once it is gone the source is closed: a thread that still reads is waited for.
-    fn drop(&mut self) {
-        self.bands = None;
-        if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
-        }
+        Ok(self.0.next()?.map(BandBuffer::band))
     }
 }
 
