@@ -38,9 +38,6 @@ pub fn bake_one(job: Job, telling: &ParallaxTelling<'_>, reporting: &Reporting) 
     let time = start.elapsed();
 
     let numbers = ParallaxSidecar::of(&jobs[0], &outcomes[0], telling.iterations);
-    if let Some((file, numbers)) = sidecar.zip(numbers.as_ref()) {
-        file.write(numbers)?;
-    }
     if !reporting.quiet {
         bake_line(&jobs[0], &outcomes[0]).iter().for_each(say);
         numbers.iter().map(|sidecar| parallax_line(&sidecar.numbers)).for_each(say);
@@ -48,6 +45,10 @@ pub fn bake_one(job: Job, telling: &ParallaxTelling<'_>, reporting: &Reporting) 
     let report = Report::new(&jobs, &outcomes, time, &[], None, telling.iterations);
     if let Some(file) = report_file {
         file.write(&report)?;
+    }
+    // A sidecar that cannot be written is no reason to go without the report.
+    if let Some((file, numbers)) = sidecar.zip(numbers.as_ref()) {
+        file.write(numbers)?;
     }
     Ok(match report.totals {
         totals if totals.baked == 1 => Exit::Success,

@@ -26,7 +26,8 @@ pub struct Green {
 /// nearly flat, and above 1000 otherwise; scanned and painted maps have 5 and more.
 const DECISIVE_RATIO: f64 = 3.0;
 
-/// A map of pure chance gets above this once in 10^15.
+/// A map of independent texels gets above this once in 10^15; a smooth one that is made of no heights and has few bumps
+/// may do so more often.
 const DECISIVE_SIGNIFICANCE: f64 = 8.0;
 
 impl Green {

@@ -2,9 +2,8 @@
 //!
 //! A file's rows pass three steps, one module each: a decoder gives interleaved samples (`samples`), `channel`
 //! picks the height of each texel or `normal` its components, and `srgb` undoes a wrong colour space of heights where
-//! that was asked for. Decoders hold a
-//! row, a strip or a block at a time where the format allows it. Writers go through `replace`, so that a name never
-//! stands for half a file.
+//! that was asked for. Decoders hold a row, a strip or a block at a time where the format allows it. Writers go through
+//! `replace`, so that a name never stands for half a file.
 
 mod channel;
 mod damage;
