@@ -55,7 +55,7 @@ impl NormalWatch<'_> {
     /// Opens the map; what was counted before belongs to another try.
     pub fn open(&self) -> Result<NormalRows> {
         let file = open_normals(&self.input.path, &self.input.read).map_err(|error| self.role.named(error))?;
-        *self.warnings.borrow_mut() = file.warnings;
+        *self.warnings.borrow_mut() = file.all_warnings();
         self.format.set(Some(file.rows.format()));
         let (rows, census) = Counted::new(file.rows);
         *self.census.borrow_mut() = Some(census);

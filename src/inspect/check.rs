@@ -162,12 +162,11 @@ pub fn check_file(
     monitor: &Monitor,
 ) -> Result<Findings> {
     monitor.check()?;
-    let NormalFile { rows, warnings, says_srgb } = open_normals(path, read)?;
+    let NormalFile { rows, warnings, srgb } = open_normals(path, read)?;
     let mut findings = check(rows, options, monitor)?;
-    for warning in warnings {
-        let is_srgb = says_srgb && warning.contains("sRGB");
-        let (problem, severity) =
-            if is_srgb { (Problem::Srgb, Severity::Fault) } else { (Problem::File, Severity::Note) };
+    let faults = srgb.into_iter().map(|warning| (warning, Problem::Srgb, Severity::Fault));
+    let notes = warnings.into_iter().map(|warning| (warning, Problem::File, Severity::Note));
+    for (warning, problem, severity) in faults.chain(notes) {
         // Warnings say what to do behind a semicolon.
         let (what, remedy) = warning.split_once("; ").unwrap_or((&warning, "see how it was exported"));
         findings.add(Finding { what: what.into(), remedy: remedy.into(), ..Finding::new(problem, severity) });

@@ -84,10 +84,17 @@ pub struct NormalReadOptions {
 pub struct NormalFile {
     /// The rows.
     pub rows: Box<dyn NormalSource>,
-    /// What looks wrong in the file, in words.
+    /// What looks wrong in the file, in words; [`NormalFile::srgb`] is apart.
     pub warnings: Vec<String>,
-    /// Whether the file says that its codes are sRGB colours, which normals never are.
-    pub says_srgb: bool,
+    /// The same if the file says that its codes are sRGB colours, which normals never are.
+    pub srgb: Option<String>,
+}
+
+impl NormalFile {
+    /// All that looks wrong in the file.
+    pub fn all_warnings(&self) -> Vec<String> {
+        self.srgb.iter().chain(&self.warnings).cloned().collect()
+    }
 }
 
 /// The most bytes that decoding one file may hold, unless something else is asked for.
@@ -159,9 +166,9 @@ pub fn open_heights(path: &Path, options: &ReadOptions) -> Result<HeightFile> {
 /// are none of a normal map's; else as [`open_heights`].
 pub fn open_normals(path: &Path, options: &NormalReadOptions) -> Result<NormalFile> {
     let opened = open_samples(path, exr::Wanted::Normals(options.channels), options.max_bytes)?;
-    let says_srgb = opened.says_srgb;
+    let srgb = opened.says_srgb.then(|| normal::SRGB_WARNING.into());
     let (rows, warnings) = NormalRows::new(path, opened, options)?;
-    Ok(NormalFile { rows: Box::new(rows), warnings, says_srgb })
+    Ok(NormalFile { rows: Box::new(rows), warnings, srgb })
 }
 
 /// Opens a file that says what it is.
@@ -281,7 +288,8 @@ impl NormalMap {
     /// [`NormalReadOptions::max_bytes`].
     pub fn read_with(path: impl AsRef<Path>, options: &NormalReadOptions) -> Result<(Self, Vec<String>)> {
         let path = path.as_ref();
-        let NormalFile { mut rows, warnings, .. } = open_normals(path, options)?;
+        let file = open_normals(path, options)?;
+        let (warnings, mut rows) = (file.all_warnings(), file.rows);
         limits::check_map(path, rows.size(), rows.format().texel().bytes(), options.max_bytes)?;
         Ok((read_normals(rows.as_mut())?, warnings))
     }

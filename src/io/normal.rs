@@ -8,7 +8,7 @@ use crate::stream::NormalSource;
 use std::path::Path;
 
 /// What the user should know about a file that says it is sRGB.
-const SRGB_WARNING: &str = "the file says that its codes are sRGB colours; a normal map is data, and they are read \
+pub(super) const SRGB_WARNING: &str = "the file says that its codes are sRGB colours; a normal map is data, and they are read \
      unconverted. If they really were converted to sRGB, export the map again as linear data";
 
 /// What the user should know about a JPEG or a lossy WebP.
@@ -32,7 +32,7 @@ pub(super) struct NormalRows {
 impl NormalRows {
     /// The rows of an opened file, and what the user should know about it.
     pub fn new(path: &Path, opened: Opened, options: &NormalReadOptions) -> Result<(Self, Vec<String>)> {
-        let Opened { samples, signed, lossy, says_srgb, mut warnings, .. } = opened;
+        let Opened { samples, signed, lossy, mut warnings, .. } = opened;
         let layout = samples.layout();
         let stored = encoding(path, layout.depth, signed, options.encoding)?;
         let is_float = layout.depth == HeightType::F32;
@@ -47,7 +47,6 @@ impl NormalRows {
             channels: channels(path, layout, options.channels)?,
             convention: options.convention,
         };
-        warnings.extend(says_srgb.then(|| SRGB_WARNING.into()));
         warnings.extend(lossy.then(|| LOSSY_WARNING.into()));
         let in_place = layout.per_texel() == format.channels.count();
         let interleaved = Samples::zeroed(layout.depth, if in_place { 0 } else { layout.per_row() });

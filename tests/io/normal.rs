@@ -249,15 +249,15 @@ fn srgb_is_a_warning_and_converts_nothing() {
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     encoder.write_header().unwrap().write_image_data(&[100, 128, 255]).unwrap();
-    let NormalFile { warnings, says_srgb, .. } = open_normals(&path, &default()).unwrap();
-    assert!(says_srgb);
-    assert_eq!(warnings.len(), 1);
-    assert!(warnings[0].contains("sRGB colours; a normal map is data, and they are read unconverted"), "{warnings:?}");
+    let file = open_normals(&path, &default()).unwrap();
+    let srgb = file.srgb.as_deref().unwrap();
+    assert!(srgb.contains("sRGB colours; a normal map is data, and they are read unconverted"), "{srgb}");
+    assert_eq!((file.all_warnings().as_slice(), file.warnings.len()), ([srgb.to_owned()].as_slice(), 0));
     assert_reads(&path, &default(), Encoding::Unorm, Channels::Xyz, CodesRef::U8(&[100, 128, 255]));
 
     let path = png(&folder, [1, 1], png::ColorType::Rgb, png::BitDepth::Eight, &[100, 128, 255]);
-    let NormalFile { warnings, says_srgb, .. } = open_normals(&path, &default()).unwrap();
-    assert!(!says_srgb && warnings.is_empty(), "{warnings:?}");
+    let NormalFile { warnings, srgb, .. } = open_normals(&path, &default()).unwrap();
+    assert!(srgb.is_none() && warnings.is_empty(), "{warnings:?}");
 }
 
 /// The smallest lossy WebP, one black texel: its only chunk, behind RIFF, length and WEBP.
