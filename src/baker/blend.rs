@@ -5,11 +5,11 @@ use super::{Baker, Ran, check_same_size};
 use crate::backend::RowBytes;
 use crate::error::{Error, Result};
 use crate::exact::Weights;
-use crate::map::{CodesMut, HeightMap, NormalMap, Size};
+use crate::map::{Codes, CodesMut, HeightMap, NormalMap, Size};
 use crate::ops::blend::{BlendInputs, BlendOptions, BlendPlan};
 use crate::stream::{
     HeightRows, LayerReader, LayerSource, MapLayers, MaskLayer, Monitor, NormalLayer, NormalRows, RowOrder, RowsOut,
-    Tiled, check_components, mask_codes, read_normals, read_normals_watched,
+    Tiled, check_components, height_codes, read_normals, read_normals_watched, rounded_mask,
 };
 
 /// How a blend ran.
@@ -53,14 +53,14 @@ impl Baker {
         let plan = BlendPlan::new(options, size, [base.format(), detail.format()], mask.map(HeightMap::height_type))?;
         plan.format.texel().check_codes(size, codes.len(), codes.depth())?;
         check_layer_sizes(size, detail.size(), mask.map(HeightMap::size), options)?;
-        let tiled = if detail.size() == size { None } else { Some(tiled(detail.clone(), size)?) };
+        let tiled = if detail.size() == size { None } else { Some(tiled(detail, size)?) };
         let detail = tiled.as_ref().unwrap_or(detail);
         for map in [base, detail] {
             check_components(map.codes(), map.format(), size.width(), 0)?;
         }
-        let mask = mask.map(mask_codes);
+        let rounded = mask.and_then(rounded_mask);
         let mut layers = vec![base.codes(), detail.codes()];
-        layers.extend(mask.as_ref().map(|mask| mask.as_ref()));
+        layers.extend(mask.map(|mask| rounded.as_ref().map_or_else(|| height_codes(mask.heights()), Codes::as_ref)));
         let (ran, ()) = self.run(|backend| {
             let band_rows = backend.map_band_rows(RowBytes::of_blend(&plan));
             let mut bands = MapLayers::new(layers.clone(), size.height(), band_rows);
@@ -107,7 +107,7 @@ impl Baker {
 }
 
 /// A normal map repeated, or cut, to `size`.
-fn tiled(map: NormalMap, size: Size) -> Result<NormalMap> {
+fn tiled(map: &NormalMap, size: Size) -> Result<NormalMap> {
     read_normals(&mut Tiled::new(map, size))
 }
 

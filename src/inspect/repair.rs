@@ -3,9 +3,11 @@
 use super::census::{Census, Counted};
 use crate::baker::{Baker, Ran};
 use crate::error::Result;
-use crate::map::{CodesMut, Encoding, NormalFormat, Size};
+use crate::exact::CodeRounding;
+use crate::map::{CodesMut, NormalFormat, Size};
 use crate::ops::blend::{BlendInputs, BlendMethod, BlendOptions};
 use crate::stream::{Monitor, NormalRows, NormalSource, RowsOut};
+use half::f16;
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -58,6 +60,9 @@ pub fn repair(
     Ok(Repaired { ran, flattened, zero_vectors })
 }
 
+const FLAT_F16: [f16; 3] = [f16::ZERO, f16::ZERO, f16::ONE];
+const FLAT_F32: [f32; 3] = [0.0, 0.0, 1.0];
+
 /// (0, 0, 1) everywhere.
 struct Flat {
     size: Size,
@@ -78,22 +83,17 @@ impl NormalSource for Flat {
         match rows {
             CodesMut::U8(codes) => fill(codes, channels, self.integers().map(|code| code as u8)),
             CodesMut::U16(codes) => fill(codes, channels, self.integers().map(|code| code as u16)),
-            CodesMut::F16(codes) => fill(codes, channels, [half::f16::ZERO, half::f16::ZERO, half::f16::ONE]),
-            CodesMut::F32(codes) => fill(codes, channels, [0.0, 0.0, 1.0]),
+            CodesMut::F16(codes) => fill(codes, channels, FLAT_F16),
+            CodesMut::F32(codes) => fill(codes, channels, FLAT_F32),
         }
         Ok(())
     }
 }
 
 impl Flat {
-    /// The codes of (0, 0, 1).
+    /// The integer codes of (0, 0, 1).
     fn integers(&self) -> [u32; 3] {
-        let greatest = self.format.encoding.greatest_code(self.format.depth).unwrap_or(0);
-        match self.format.encoding {
-            Encoding::Unorm => [greatest.div_ceil(2), greatest.div_ceil(2), greatest],
-            Encoding::Biased => [greatest + 1, greatest + 1, 2 * greatest + 1],
-            Encoding::Snorm | Encoding::Float => [0, 0, greatest],
-        }
+        CodeRounding::new(self.format.texel()).map_or([0; 3], |rounding| [0, 0, 1].map(|a| rounding.code(a, 1)))
     }
 }
 
@@ -119,11 +119,8 @@ impl NormalSource for Flattened {
         let channels = self.format().channels.count();
         match rows {
             CodesMut::U8(_) | CodesMut::U16(_) => {}
-            CodesMut::F16(codes) => {
-                let flat = [half::f16::ZERO, half::f16::ZERO, half::f16::ONE];
-                flatten(codes, channels, flat, |code| code.to_f32());
-            }
-            CodesMut::F32(codes) => flatten(codes, channels, [0.0, 0.0, 1.0], |code| code),
+            CodesMut::F16(codes) => flatten(codes, channels, FLAT_F16, |code| code.to_f32()),
+            CodesMut::F32(codes) => flatten(codes, channels, FLAT_F32, |code| code),
         }
         Ok(())
     }

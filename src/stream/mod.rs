@@ -23,7 +23,7 @@ pub(crate) use layers::{LayerBand, LayerBands, LayerReader, LayerSource, MapLaye
 pub(crate) use memory::{MapBands, MapSink};
 pub use monitor::Monitor;
 pub(crate) use normals::read_normals_watched;
-pub(crate) use normals::{HeightLayer, MaskLayer, NormalLayer, Tiled, check_components, height_codes, mask_codes};
+pub(crate) use normals::{HeightLayer, MaskLayer, NormalLayer, Tiled, check_components, height_codes, rounded_mask};
 pub use normals::{NormalSource, read_normals};
 pub(crate) use order::RowOrder;
 pub(crate) use reader::{BandReader, read_map_watched};

@@ -6,6 +6,7 @@ use super::reader::RowSource;
 use crate::error::{Error, Result};
 use crate::map::{Codes, CodesMut, CodesRef, Depth, HeightMap, HeightType, Heights, HeightsMut, NormalFormat};
 use crate::map::{NormalMap, Size};
+use std::borrow::Borrow;
 
 /// A normal map that is read from the top.
 pub trait NormalSource: Send {
@@ -70,33 +71,33 @@ impl NormalMap {
 }
 
 /// A normal map in memory, repeated from its first texel on, or cut, to fill another size.
-pub(crate) struct Tiled {
-    map: NormalMap,
+pub(crate) struct Tiled<M> {
+    map: M,
     size: Size,
     next_row: usize,
 }
 
-impl Tiled {
-    pub fn new(map: NormalMap, size: Size) -> Self {
+impl<M: Borrow<NormalMap>> Tiled<M> {
+    pub fn new(map: M, size: Size) -> Self {
         Self { map, size, next_row: 0 }
     }
 }
 
-impl NormalSource for Tiled {
+impl<M: Borrow<NormalMap> + Send> NormalSource for Tiled<M> {
     fn size(&self) -> Size {
         self.size
     }
 
     fn format(&self) -> NormalFormat {
-        self.map.format()
+        self.map.borrow().format()
     }
 
     fn read(&mut self, mut rows: CodesMut<'_>) -> Result<()> {
-        let bytes_of = |width: usize| width * self.map.format().texel().bytes();
-        let tile = self.map.codes().bytes().chunks_exact(bytes_of(self.map.size().width()));
-        let tile: Vec<&[u8]> = tile.collect();
-        for row in rows.bytes_mut().chunks_exact_mut(bytes_of(self.size.width())) {
-            let from = tile[self.next_row % tile.len()];
+        let map = self.map.borrow();
+        let bytes_of = |size: Size| size.width() * map.format().texel().bytes();
+        for row in rows.bytes_mut().chunks_exact_mut(bytes_of(self.size)) {
+            let first = self.next_row % map.size().height() * bytes_of(map.size());
+            let from = &map.codes().bytes()[first..][..bytes_of(map.size())];
             row.chunks_mut(from.len()).for_each(|to| to.copy_from_slice(&from[..to.len()]));
             self.next_row += 1;
         }
@@ -243,13 +244,10 @@ fn transition_code(t: f32) -> u16 {
     (f64::from(t.clamp(0.0, 1.0)) * 65_535.0 + 0.5) as u16
 }
 
-/// The codes of a mask in memory.
-pub(crate) fn mask_codes(mask: &HeightMap) -> Codes {
-    match mask.heights() {
-        Heights::U8(codes) => Codes::U8(codes.to_vec()),
-        Heights::U16(codes) => Codes::U16(codes.to_vec()),
-        Heights::F32(heights) => Codes::U16(heights.iter().map(|t| transition_code(*t)).collect()),
-    }
+/// The codes of a mask in memory that holds floats; other masks hold codes as they are.
+pub(crate) fn rounded_mask(mask: &HeightMap) -> Option<Codes> {
+    let Heights::F32(heights) = mask.heights() else { return None };
+    Some(Codes::U16(heights.iter().map(|t| transition_code(*t)).collect()))
 }
 
 /// Heights in memory as codes.

@@ -7,7 +7,7 @@ use super::output::{Output, bits};
 use super::transfer::Transfer;
 use crate::error::Result;
 use crate::exact::CodeRounding;
-use crate::map::{CodesRef, Depth, Encoding, TexelFormat};
+use crate::map::{CodesRef, Depth, TexelFormat};
 use crate::ops::Precision;
 use crate::ops::bake::{BakePlan, FloatSlope, IntegerSlope, Slope};
 use crate::stream::{Band, CodeSink, HeightBand, HeightBands};
@@ -161,7 +161,6 @@ pub(super) fn params(plan: &BakePlan, places: &Places) -> Params {
 /// The code of 1, for the alpha channel of an opaque texture.
 fn code_of_one(format: TexelFormat) -> u32 {
     match (format.depth, CodeRounding::new(format)) {
-        (_, Some(_)) if format.encoding == Encoding::Biased => (1 << (8 * format.depth.bytes())) - 1,
         (_, Some(rounding)) => rounding.stored(rounding.greatest),
         (Depth::Float16, None) => half::f16::ONE.to_bits().into(),
         (_, None) => 1f32.to_bits(),
