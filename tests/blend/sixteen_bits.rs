@@ -4,7 +4,8 @@ use super::{assert_right, every_method};
 use crate::oracle::{UnormZero, blend};
 use crate::support::{
     BIASED16, FLOAT16, FLOAT32, FORMATS, Image, Random, SNORM8, SNORM16, Subject, UNORM8, UNORM16, assert_every_blend,
-    blend_options, dx, every_baker, landmarks, map_of_texels, normal_map, pair, random_codes, weighted, xy,
+    blend_options, convergent, dx, every_baker, factor_and_centre, landmarks, map_of_texels, normal_map, pair,
+    random_codes, rounded_by_f64, weighted, xy,
 };
 use half::f16;
 use std::collections::BTreeSet;
@@ -188,42 +189,6 @@ fn middle(random: &mut Random, format: NormalFormat) -> f64 {
     }
 }
 
-/// The code of v is the nearest to factor v + centre.
-fn factor_and_centre(format: NormalFormat) -> (f64, f64) {
-    let l = f64::from(format.encoding.greatest_code(format.depth).expect("integer codes"));
-    if format.encoding == Encoding::Unorm { (l / 2.0, l / 2.0) } else { (l, 0.0) }
-}
-
-/// What f64 makes of a component.
-fn rounded_by_f64(v: f64, format: NormalFormat) -> f64 {
-    match format.depth {
-        Depth::Float16 => f16::from_f64(v).to_f64(),
-        Depth::Float32 => f64::from(v as f32),
-        Depth::Bits8 | Depth::Bits16 => {
-            let (factor, centre) = factor_and_centre(format);
-            (v * factor + centre + 0.5).floor()
-        }
-    }
-}
-
-/// The last convergent of a number's continued fraction with parts of at most 65535.
-fn convergent(value: f64) -> (i64, i64) {
-    let ((mut p0, mut q0), (mut p, mut q)) = ((0, 1), (1, 0));
-    let mut rest = value;
-    loop {
-        let whole = rest.floor();
-        let (p1, q1) = (whole as i64 * p + p0, whole as i64 * q + q0);
-        if p1.max(q1) > 65_535 {
-            return (p, q);
-        }
-        ((p0, q0), (p, q)) = ((p, q), (p1, q1));
-        if rest == whole {
-            return (p, q);
-        }
-        rest = 1.0 / (rest - whole);
-    }
-}
-
 /// One texel of each map, and the weight p/q of both, that all but meet the middle between two codes.
 struct Near {
     /// Of the component from the middle, as a share of it.
@@ -251,7 +216,7 @@ fn nearest_weights(random: &mut Random, format: NormalFormat) -> Vec<Near> {
         if !(1e-3..1e3).contains(&wanted) {
             continue;
         }
-        let weight = convergent(wanted);
+        let weight = convergent(wanted, 65_535);
         // The component's change beside the weight's: 1 - v^2 for v = z, z^2 for v = x.
         let change = if is_z { 1.0 - v * v } else { 1.0 / (1.0 + wanted * wanted * square) };
         let distance = (weight.0 as f64 / weight.1 as f64 / wanted - 1.0).abs() * change;

@@ -3,10 +3,21 @@
 #![cfg(unix)]
 
 use super::support::{Folder, Run, read_png};
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
 
 /// So many that no machine is done before the signal comes.
 const FILES: usize = 400;
+
+/// What a run says that gets a signal as soon as `is_time`; it is told the process's number.
+fn signalled(mut command: Command, signal: &str, is_time: impl Fn(&str) -> bool) -> Output {
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let id = child.id().to_string();
+    while !is_time(&id) {
+        std::thread::yield_now();
+    }
+    assert!(Command::new("kill").args([signal, &id]).status().unwrap().success());
+    child.wait_with_output().unwrap()
+}
 
 #[test]
 fn an_interrupted_folder_leaves_whole_files_and_says_what_is_missing() {
@@ -17,13 +28,8 @@ fn an_interrupted_folder_leaves_whole_files_and_says_what_is_missing() {
         std::fs::hard_link(&file, folder.path(&format!("tex/m{index}_height.raw"))).unwrap();
     }
     let arguments = ["bake", "tex", "--out", "out", "--raw", "1024x1024:u8", "--report", "report.json"];
-    let mut command = folder.command(&arguments);
-    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    while !folder.files("out").iter().any(|file| file.ends_with(".png")) {
-        std::thread::yield_now();
-    }
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-    let run = Run::from(child.wait_with_output().unwrap()).ends(130);
+    let has_output = |_: &str| folder.files("out").iter().any(|file| file.ends_with(".png"));
+    let run = Run::from(signalled(folder.command(&arguments), "-INT", has_output)).ends(130);
 
     let outputs = folder.files("out");
     assert!(outputs.iter().all(|file| file.ends_with("_normal.png")), "{outputs:?}");
@@ -52,13 +58,8 @@ fn an_interrupted_file_leaves_nothing() {
     for rows in [4096u64, 16384, 65536] {
         std::fs::File::create(folder.path("heights.raw")).unwrap().set_len(4096 * rows).unwrap();
         let layout = format!("4096x{rows}:u8");
-        let mut command = folder.command(&["normal", "heights.raw", "--raw", &layout, "-o", "out/normal.png"]);
-        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        while folder.files("out").is_empty() {
-            std::thread::yield_now();
-        }
-        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-        let output = child.wait_with_output().unwrap();
+        let command = folder.command(&["normal", "heights.raw", "--raw", &layout, "-o", "out/normal.png"]);
+        let output = signalled(command, "-INT", |_| !folder.files("out").is_empty());
         if output.status.code() == Some(0) {
             std::fs::remove_file(folder.path("out/normal.png")).unwrap();
             continue;
@@ -77,13 +78,8 @@ fn an_interrupted_blend_leaves_nothing() {
     std::fs::create_dir(folder.path("out")).unwrap();
     for rows in [4096, 16384, 65535] {
         sparse_tiff(&folder, "map.tif", 4096, rows);
-        let mut command = folder.command(&["blend", "map.tif", "map.tif", "-o", "out/n.tif", "--report", "r.json"]);
-        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        while folder.files("out").is_empty() {
-            std::thread::yield_now();
-        }
-        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-        let output = child.wait_with_output().unwrap();
+        let command = folder.command(&["blend", "map.tif", "map.tif", "-o", "out/n.tif", "--report", "r.json"]);
+        let output = signalled(command, "-INT", |_| !folder.files("out").is_empty());
         if output.status.code() == Some(0) {
             std::fs::remove_file(folder.path("out/n.tif")).unwrap();
             continue;
@@ -108,14 +104,7 @@ fn an_interrupted_check_or_diff_leaves_nothing() {
         &["check", "map.tif", "--repair", "--channels", "xyz", "-o", "out/n.tif"],
     ];
     for arguments in arguments {
-        let child = folder.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        let id = child.id().to_string();
-        // Until it listens for signals.
-        while !listens(&id) {
-            std::thread::yield_now();
-        }
-        assert!(Command::new("kill").args(["-TERM", &id]).status().unwrap().success());
-        let run = Run::from(child.wait_with_output().unwrap()).ends(130);
+        let run = Run::from(signalled(folder.command(arguments), "-TERM", listens)).ends(130);
         assert!(run.stderr.contains("interrupted: "), "{arguments:?}: {}", run.stderr);
         assert_eq!((run.stdout.as_str(), folder.files("out")), ("", Vec::new()), "{arguments:?}");
     }
@@ -129,12 +118,7 @@ fn an_interrupt_while_the_repaired_map_is_checked_keeps_it() {
     for rows in [4096, 16384, 65535] {
         sparse_tiff(&folder, "map.tif", 4096, rows);
         let arguments = ["check", "map.tif", "--repair", "--channels", "xyz", "-o", "out/n.tif"];
-        let child = folder.command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        while folder.files("out") != ["n.tif"] {
-            std::thread::yield_now();
-        }
-        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-        let output = child.wait_with_output().unwrap();
+        let output = signalled(folder.command(&arguments), "-INT", |_| folder.files("out") == ["n.tif"]);
         if [Some(0), Some(1)].contains(&output.status.code()) {
             std::fs::remove_file(folder.path("out/n.tif")).unwrap();
             continue;

@@ -2,12 +2,12 @@
 
 use crate::oracle;
 use crate::support::{
-    FILTERS, FLOAT16, FLOAT32, FORMATS, Random, SNORM16, UNORM8, UNORM16, assert_every_baker, greatest_sum,
-    map_of_pairs, map_u16, options,
+    FILTERS, FLOAT16, FLOAT32, FORMATS, Random, SNORM16, UNORM8, UNORM16, assert_every_baker, convergent,
+    factor_and_centre, greatest_sum, map_of_pairs, map_u16, options, rounded_by_f64,
 };
 use half::f16;
 use std::collections::BTreeSet;
-use texbake::{Convention, Depth, Encoding, Filter, HeightMap, NormalFormat, NormalOptions, Rational, Scale};
+use texbake::{Convention, Depth, Filter, HeightMap, NormalFormat, NormalOptions, Rational, Scale};
 
 /// Scales at both ends of what is allowed, and between.
 const SCALES: [&str; 9] =
@@ -200,21 +200,6 @@ fn pairs_nearest_to_a_boundary() {
     }
 }
 
-/// The ratio of parts below 2^24 beside `value`: the last convergent of its continued fraction.
-fn convergent(value: f64) -> (i64, i64) {
-    let ((mut p0, mut q0), (mut p, mut q)) = ((0, 1), (1, 0));
-    let mut rest = value;
-    loop {
-        let whole = rest.floor();
-        let (p1, q1) = (whole as i64 * p + p0, whole as i64 * q + q0);
-        if p1.max(q1) >= 1 << 24 {
-            return (p, q);
-        }
-        ((p0, q0), (p, q)) = ((p, q), (p1, q1));
-        rest = 1.0 / (rest - whole);
-    }
-}
-
 /// A component in the middle between two codes or floats.
 fn middle(random: &mut Random, format: NormalFormat) -> f64 {
     let between = |a: f64, b: f64| (a + b) / 2.0;
@@ -235,24 +220,6 @@ fn middle(random: &mut Random, format: NormalFormat) -> f64 {
     }
 }
 
-/// The code of v is the nearest to factor v + centre.
-fn factor_and_centre(format: NormalFormat) -> (f64, f64) {
-    let l = f64::from(format.encoding.greatest_code(format.depth).expect("integer codes"));
-    if format.encoding == Encoding::Unorm { (l / 2.0, l / 2.0) } else { (l, 0.0) }
-}
-
-/// What f64 makes of a component.
-fn rounded_by_f64(v: f64, format: NormalFormat) -> f64 {
-    match format.depth {
-        Depth::Float16 => f16::from_f64(v).to_f64(),
-        Depth::Float32 => f64::from(v as f32),
-        Depth::Bits8 | Depth::Bits16 => {
-            let (factor, centre) = factor_and_centre(format);
-            (v * factor + centre + 0.5).floor()
-        }
-    }
-}
-
 /// The scale s that makes x (or z) of the normal of a pair of slopes over s the given component; NaN if none does.
 fn scale_for(v: f64, [a, b]: [f64; 2], is_z: bool) -> f64 {
     let square = a * a + b * b;
@@ -268,7 +235,7 @@ fn pair_and_scale(random: &mut Random, format: NormalFormat, filter: Filter) -> 
         let pair = [0; 2].map(|_| random.any_magnitude(greatest_sum(filter) / step) * step);
         let slopes = pair.map(|sum| sum as f64 / (d as f64 * 65535.0));
         let scale = scale_for(middle(random, format), slopes, random.below(2) == 0);
-        let (p, q) = convergent(Some(scale).filter(|scale| (1e-3..1e6).contains(scale))?);
+        let (p, q) = convergent(Some(scale).filter(|scale| (1e-3..1e6).contains(scale))?, (1 << 24) - 1);
         let distance = (p as f64 / q as f64 / scale - 1.0).abs();
         Some((distance, pair, (p, q)))
     });

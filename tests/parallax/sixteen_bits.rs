@@ -2,7 +2,9 @@
 
 use super::assert_right;
 use crate::oracle::parallax;
-use crate::support::{FILTERS, Image, Random, assert_every_parallax, map_u16, parallax_formats, parallax_options};
+use crate::support::{
+    FILTERS, Image, Random, assert_every_parallax, convergent, map_u16, parallax_formats, parallax_options,
+};
 use texbake::{Depth, Encoding, HeightMap, ParallaxFormat, ParallaxOptions, Rational, Scale};
 
 #[test]
@@ -82,21 +84,6 @@ fn by_f64(height: u16, [gx, gy]: [i64; 2], s: f64, format: ParallaxFormat) -> f6
     }
 }
 
-/// The last convergent of a number's continued fraction with parts below 2^24.
-fn convergent(value: f64) -> (i64, i64) {
-    let ((mut p0, mut q0), (mut p, mut q)) = ((0, 1), (1, 0));
-    let mut rest = value;
-    loop {
-        let whole = rest.floor();
-        let (p1, q1) = (whole as i64 * p + p0, whole as i64 * q + q0);
-        if p1.max(q1) >= 1 << 24 || rest == whole {
-            return if p1.max(q1) < 1 << 24 { (p1, q1) } else { (p, q) };
-        }
-        ((p0, q0), (p, q)) = ((p, q), (p1, q1));
-        rest = 1.0 / (rest - whole);
-    }
-}
-
 /// A scale of two parts of 24 bits comes within 2^-47 of one that meets the middle between two codes.
 #[test]
 fn scales_nearest_to_a_boundary() {
@@ -117,7 +104,7 @@ fn scales_nearest_to_a_boundary() {
                 let slopes = sums.map(|g| g as f64 / (2.0 * 65_535.0));
                 let square = slopes[0] * slopes[0] + slopes[1] * slopes[1];
                 let scale = ((part * part / (v * v) - 1.0) / square).sqrt();
-                let (p, q) = convergent(Some(scale).filter(|scale| (1e-3..1e6).contains(scale))?);
+                let (p, q) = convergent(Some(scale).filter(|scale| (1e-3..1e6).contains(scale))?, (1 << 24) - 1);
                 // The change of the value beside the scale's: 1 - z^2.
                 let change = 1.0 - (v / part).powi(2);
                 Some(((p as f64 / q as f64 / scale - 1.0).abs() * change, height, sums, (p, q)))

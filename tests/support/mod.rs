@@ -1,6 +1,7 @@
 //! What every topic needs: the bakers under test, the comparison of codes, chance, and maps of chosen slopes.
 
 mod bakers;
+mod boundaries;
 mod codes;
 mod compare;
 mod pairs;
@@ -10,6 +11,7 @@ pub use bakers::{
     Subject, assert_blends, assert_every_baker, assert_every_blend, assert_every_parallax,
     assert_every_parallax_with_normals, bakers, every_baker,
 };
+pub use boundaries::{convergent, factor_and_centre, rounded_by_f64};
 pub use codes::{dx, flat_map, landmarks, map_of_texels, normal_map, random_codes, xy};
 pub use compare::{Format, Image, assert_same, differences};
 pub use pairs::{every_difference_pair, greatest_sum, map_of_pairs};
