@@ -51,6 +51,19 @@ pub enum Error {
         value: f32,
     },
 
+    /// A number of a mesh's vertex is NaN or infinite.
+    #[error(
+        "the {attribute} of vertex {vertex} is {value}: it must be finite numbers; repair the mesh where it was made"
+    )]
+    Vertex {
+        /// What of the vertex.
+        attribute: &'static str,
+        /// The vertex, counted from 0.
+        vertex: usize,
+        /// The value that was found.
+        value: String,
+    },
+
     /// The operating system refused to read or write.
     #[error("{}: {source}{}", path.display(), remedy(source))]
     Io {

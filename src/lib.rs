@@ -96,6 +96,7 @@ pub mod gpu {
 pub mod inspect;
 pub mod io;
 mod map;
+mod mesh;
 mod names;
 mod ops;
 pub mod stream;
@@ -108,6 +109,8 @@ pub use map::{
     Channels, CodeMap, Codes, CodesMut, CodesRef, Convention, Depth, Edge, Edges, Encoding, Grid, HeightMap,
     HeightType, Heights, HeightsMut, MapFormat, Maps, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Size,
 };
+pub use mesh::{CornerAdjacency, Mesh};
 pub use ops::Precision;
 pub use ops::bake::{BakeOptions, Filter, NormalOptions, ParallaxOptions};
 pub use ops::blend::{BlendInputs, BlendMethod, BlendOptions};
+pub use ops::tangents::{MissingNormals, TangentMethod, TangentOptions, TangentReport, Tangents};

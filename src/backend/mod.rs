@@ -9,6 +9,7 @@ use crate::map::CodesMut;
 use crate::ops::bake::BakePlan;
 use crate::ops::blend::BlendPlan;
 use crate::ops::parallax::ParallaxPlan;
+use crate::ops::tangents::TangentPlan;
 use crate::stream::{CodeSink, HeightBands, LayerBands};
 
 /// Runs operations. One required method for each: a missing twin is a compile error.
@@ -44,6 +45,14 @@ pub(crate) trait Backend: Send + Sync {
     /// # Errors
     /// As [`Backend::bake`].
     fn parallax(&self, plan: &ParallaxPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()>;
+
+    /// The tangent of each fan of a mesh, and its handedness as to growing v; zero where no direction is left.
+    ///
+    /// `tangents` has one element for each fan.
+    ///
+    /// # Errors
+    /// [`crate::Error::Device`].
+    fn tangents(&self, plan: &TangentPlan<'_>, tangents: &mut [[f32; 4]]) -> Result<()>;
 }
 
 /// Bytes of one row on its way through an operation.

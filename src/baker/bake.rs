@@ -16,6 +16,8 @@ use crate::stream::{
 pub struct Baked {
     /// Where it ran.
     pub ran: Ran,
+    /// Size of the maps.
+    pub size: Size,
     /// How the heights are stored.
     pub height_type: HeightType,
     /// The scale that was used, and whether it is the one that was asked for.
@@ -103,9 +105,9 @@ impl Baker {
             let whole = maps.iter_mut().zip(plan.outputs()).map(|(codes, format)| whole_sink(codes, format, plan.size));
             let mut sinks: Vec<MapSink<'_>> = whole.collect();
             backend.bake(&plan, &mut bands, &mut as_dyn(&mut sinks))?;
-            Ok((plan.size, ()))
+            Ok(())
         })?;
-        Ok(Baked { ran, height_type: plan.height_type, scale: plan.scale })
+        Ok(Baked { ran, size: plan.size, height_type: plan.height_type, scale: plan.scale })
     }
 
     /// Bakes rows from `open` into rows of a normal map for `create` while they are read and written: as
@@ -146,7 +148,7 @@ impl Baker {
         options: &BakeOptions,
         monitor: &Monitor,
     ) -> Result<Baked> {
-        let (ran, (height_type, scale)) = self.run(|backend| {
+        let (ran, plan) = self.run(|backend| {
             let source = open()?;
             let plan = BakePlan::new(options, source.size(), source.height_type())?;
             let sinks = create(plan.size)?;
@@ -161,9 +163,9 @@ impl Baker {
             write_watched(sinks, &formats, plan.size, order, monitor, |sinks| {
                 stream(backend, &plan, source, order, monitor, sinks)
             })?;
-            Ok((plan.size, (plan.height_type, plan.scale)))
+            Ok(plan)
         })?;
-        Ok(Baked { ran, height_type, scale })
+        Ok(Baked { ran, size: plan.size, height_type: plan.height_type, scale: plan.scale })
     }
 }
 

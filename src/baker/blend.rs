@@ -17,6 +17,8 @@ use crate::stream::{
 pub struct Blended {
     /// Where it ran.
     pub ran: Ran,
+    /// Size of the maps.
+    pub size: Size,
     /// The weights that were used, and whether they are those that were asked for; `None` for methods without weights.
     pub weights: Option<Weights>,
 }
@@ -65,9 +67,9 @@ impl Baker {
             let band_rows = backend.map_band_rows(RowBytes::of_blend(&plan));
             let mut bands = MapLayers::new(layers.clone(), size.height(), band_rows);
             backend.blend(&plan, &mut bands, &mut whole_sink(&mut codes, plan.format.texel(), size))?;
-            Ok((size, ()))
+            Ok(())
         })?;
-        Ok(Blended { ran, weights: plan.used_weights() })
+        Ok(Blended { ran, size, weights: plan.used_weights() })
     }
 
     /// Blends rows from `open` into rows for `create` while they are read and written; a map that tiles is held.
@@ -81,7 +83,7 @@ impl Baker {
         options: &BlendOptions,
         monitor: &Monitor,
     ) -> Result<Blended> {
-        let (ran, weights) = self.run(|backend| {
+        let (ran, (size, weights)) = self.run(|backend| {
             let BlendInputs { base, mut detail, mask } = open()?;
             let size = base.size();
             let mask_type = mask.as_ref().map(|mask| mask.height_type());
@@ -102,7 +104,7 @@ impl Baker {
             })?;
             Ok((size, plan.used_weights()))
         })?;
-        Ok(Blended { ran, weights })
+        Ok(Blended { ran, size, weights })
     }
 }
 

@@ -3,6 +3,7 @@
 mod bake;
 mod blend;
 mod parallax;
+mod tangents;
 mod write;
 
 pub use bake::Baked;
@@ -43,8 +44,6 @@ pub struct Ran {
     pub device: String,
     /// Why another backend failed before, if one did.
     pub fallback: Option<String>,
-    /// Size of the maps.
-    pub size: Size,
 }
 
 impl Ran {
@@ -116,10 +115,10 @@ impl Baker {
     }
 
     /// Runs a job, and runs it again on the fallback if the backend's device fails; then it says why.
-    fn run<T>(&self, mut job: impl FnMut(&dyn Backend) -> Result<(Size, T)>) -> Result<(Ran, T)> {
+    fn run<T>(&self, mut job: impl FnMut(&dyn Backend) -> Result<T>) -> Result<(Ran, T)> {
         let mut run_on = |backend: &dyn Backend, fallback| {
-            let (size, result) = job(backend)?;
-            Ok((Ran { backend: backend.kind(), device: backend.device(), fallback, size }, result))
+            let result = job(backend)?;
+            Ok((Ran { backend: backend.kind(), device: backend.device(), fallback }, result))
         };
         match (run_on(self.backend.as_ref(), None), &self.fallback) {
             (Err(Error::Device { adapter, reason }), Some(fallback)) => {
@@ -147,6 +146,7 @@ mod tests {
     use crate::ops::bake::{BakePlan, NormalOptions};
     use crate::ops::blend::BlendPlan;
     use crate::ops::parallax::ParallaxPlan;
+    use crate::ops::tangents::TangentPlan;
     use crate::stream::{CodeSink, HeightBands, LayerBands};
 
     /// A device that fails after it has written a wrong row.
@@ -176,6 +176,10 @@ mod tests {
         }
 
         fn parallax(&self, _: &ParallaxPlan, _: &mut dyn LayerBands, _: &mut dyn CodeSink) -> Result<()> {
+            Err(Error::device("failing", "out of memory"))
+        }
+
+        fn tangents(&self, _: &TangentPlan<'_>, _: &mut [[f32; 4]]) -> Result<()> {
             Err(Error::device("failing", "out of memory"))
         }
     }

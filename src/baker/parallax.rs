@@ -34,7 +34,7 @@ impl Baker {
             let layers = vec![height_codes(heights.heights()), normals.codes()];
             let mut bands = MapLayers::new(layers, plan.size.height(), band_rows);
             backend.parallax(&plan, &mut bands, &mut whole_sink(&mut map.codes_mut(), format.texel(), plan.size))?;
-            Ok((plan.size, ()))
+            Ok(())
         })?;
         Ok(map)
     }
@@ -50,8 +50,8 @@ impl Baker {
         format: ParallaxFormat,
         precision: Precision,
         monitor: &Monitor,
-    ) -> Result<Ran> {
-        let (ran, ()) = self.run(|backend| {
+    ) -> Result<(Ran, Size)> {
+        self.run(|backend| {
             let (heights, normals) = open()?;
             let plan = ParallaxPlan::new(heights.size(), heights.height_type(), normals.format(), format, precision)?;
             check_same_size("size of the normal map", normals.size(), plan.size)?;
@@ -62,8 +62,7 @@ impl Baker {
             write_watched(sinks, &[format.texel()], plan.size, RowOrder::FromTop, monitor, |sinks| {
                 backend.parallax(&plan, &mut LayerReader::new(layers, plan.size.height(), band_rows)?, sinks[0])
             })?;
-            Ok((plan.size, ()))
-        })?;
-        Ok(ran)
+            Ok(plan.size)
+        })
     }
 }

@@ -238,7 +238,12 @@ impl BlendReport {
             tile: job.options.tile,
             format: job.options.format.into(),
             precision: job.options.precision.to_string(),
-            run: RunReport::new(outcome, blended.map(|blended| &blended.ran), &job.baker, job.failure(outcome)),
+            run: RunReport::new(
+                outcome,
+                blended.map(|blended| (&blended.ran, blended.size)),
+                &job.baker,
+                job.failure(outcome),
+            ),
         }
     }
 }

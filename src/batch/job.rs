@@ -151,9 +151,9 @@ impl Job {
         let ran = self.baker.parallax_with_normals_rows(&open, &create, format, self.options.precision, monitor);
         warnings.extend(heights.warnings(ran.is_ok()));
         warnings.extend(normals.warnings(ran.is_ok()).into_iter().map(|text| format!("the normal map {text}")));
-        let ran = ran?;
-        let scale = self.options.scale.resolve(ran.size)?;
-        let baked = Baked { ran, height_type: heights.height_type(), scale };
+        let (ran, size) = ran?;
+        let scale = self.options.scale.resolve(size)?;
+        let baked = Baked { ran, size, height_type: heights.height_type(), scale };
         warnings.extend(inexact_scale(&baked));
         Ok(baked)
     }

@@ -83,7 +83,7 @@ impl ParallaxNumbers {
     /// Those of the parallax map that `job` made, for `iterations` steps; `None` if it made none.
     pub fn of(job: &Job, outcome: &Outcome, iterations: NonZeroU32) -> Option<Self> {
         let (baked, format) = outcome.result.as_ref().ok().zip(job.options.parallax)?;
-        Some(Self::new(baked.scale, baked.ran.size, format, iterations))
+        Some(Self::new(baked.scale, baked.size, format, iterations))
     }
 
     /// The numbers of a map of `size` and `format`, baked with `scale`, for `iterations` steps.
@@ -115,7 +115,7 @@ impl ParallaxSidecar {
     /// Describes the parallax map that `job` made, for `iterations` steps; `None` if it made none.
     pub fn of(job: &Job, outcome: &Outcome, iterations: NonZeroU32) -> Option<Self> {
         let (baked, format) = outcome.result.as_ref().ok().zip(job.options.parallax)?;
-        let size = baked.ran.size;
+        let size = baked.size;
         Some(Self {
             version: env!("CARGO_PKG_VERSION"),
             map: job.outputs.parallax.as_ref()?.file_name()?.to_string_lossy().into(),

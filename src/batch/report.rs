@@ -6,6 +6,7 @@ use super::{Job, MapKind, Outcome};
 use crate::baker::{Baker, Ran};
 use crate::error::{Error, Result};
 use crate::io::replace::Replacement;
+use crate::map::Size;
 use crate::ops::bake::BakeOptions;
 use serde::{Serialize, Serializer};
 use std::io::Write;
@@ -240,7 +241,7 @@ impl Totals {
                 FileResult::NotBegun => totals.not_begun += 1,
             }
             if let Ok(baked) = &outcome.result {
-                totals.texels += baked.ran.size.texels() as u64;
+                totals.texels += baked.size.texels() as u64;
                 totals.bytes_in += outcome.bytes_in;
                 totals.bytes_out += outcome.bytes_out;
             }
@@ -263,8 +264,14 @@ impl FileResult {
 }
 
 impl RunReport {
-    /// What `outcome` says; `ran` is there if it went well.
-    pub(super) fn new<T>(outcome: &Outcome<T>, ran: Option<&Ran>, baker: &Baker, failure: Option<String>) -> Self {
+    /// What `outcome` says; how it ran and the size of its maps are there if it went well.
+    pub(super) fn new<T>(
+        outcome: &Outcome<T>,
+        done: Option<(&Ran, Size)>,
+        baker: &Baker,
+        failure: Option<String>,
+    ) -> Self {
+        let (ran, size) = done.unzip();
         Self {
             result: FileResult::of(outcome),
             error: failure,
@@ -273,8 +280,8 @@ impl RunReport {
             adapter: ran.map(|ran| ran.device.clone()),
             reason: baker.reason().to_owned(),
             fallback: ran.and_then(|ran| ran.fallback.clone()),
-            width: ran.map(|ran| ran.size.width()),
-            height: ran.map(|ran| ran.size.height()),
+            width: size.map(Size::width),
+            height: size.map(Size::height),
             milliseconds: outcome.time.map(|time| (time.as_secs_f64() * 1e6).round() / 1e3),
             bytes_in: outcome.bytes_in,
             bytes_out: outcome.bytes_out,
@@ -297,7 +304,7 @@ impl FileReport {
             depth: baked.map(|baked| baked.height_type.to_string()),
             scale: scale.map(|s| UsedScale { x: ratio(s.x, s.q), y: ratio(s.y, s.q), exact: s.exact }),
             parallax: ParallaxNumbers::of(job, outcome, iterations),
-            run: RunReport::new(outcome, baked.map(|baked| &baked.ran), &job.baker, job.failure(outcome)),
+            run: RunReport::new(outcome, baked.map(|baked| (&baked.ran, baked.size)), &job.baker, job.failure(outcome)),
         }
     }
 }

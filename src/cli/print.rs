@@ -4,7 +4,7 @@ use comfy_table::{CellAlignment, Table, presets};
 use std::cmp::Reverse;
 use std::io::Write;
 use texbake::batch::{BlendJob, BlendOutcome, FileResult, Job, Outcome, ParallaxNumbers, Totals, describe_codes};
-use texbake::{Baked, Baker, Device, HeightType, NormalFormat, Ran, Scale};
+use texbake::{Baked, Baker, Device, HeightType, NormalFormat, Ran, Scale, Size};
 
 /// Longer folders get a table of what was not baked, and of the slowest.
 const TABLE_ROWS: usize = 40;
@@ -27,7 +27,7 @@ pub fn file_line(job: &Job, outcome: &Outcome) -> String {
             "baked {} -> {}, {}, {}, {}",
             job.input.display(),
             outputs(job),
-            baked.ran.size,
+            baked.size,
             baked.height_type,
             milliseconds(outcome)
         ),
@@ -48,14 +48,14 @@ pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
     Some(format!(
         "{}: {}, {} to {}{}, scale {}{}, {}; {}",
         outputs(job),
-        baked.ran.size,
+        baked.size,
         baked.height_type,
         formats.join(" and "),
         job.normals.iter().map(|normals| format!(" with {}", normals.path.display())).collect::<String>(),
         baked.scale,
         if nearly_flat { " (nearly flat: see --scale)" } else { "" },
         options.precision,
-        how_it_ran(&baked.ran, &job.baker, outcome),
+        how_it_ran(&baked.ran, baked.size, &job.baker, outcome),
     ))
 }
 
@@ -83,11 +83,11 @@ pub fn blend_line(job: &BlendJob, method: &str, blended: &BlendOutcome) -> Optio
     Some(format!(
         "{}: {}, {method}{weights} of {}{mask} to {}, {}; {}",
         job.output.display(),
-        done.ran.size,
+        done.size,
         inputs.collect::<Vec<_>>().join(" and "),
         describe_normals(job.options.format),
         job.options.precision,
-        how_it_ran(&done.ran, &job.baker, &blended.outcome),
+        how_it_ran(&done.ran, done.size, &job.baker, &blended.outcome),
     ))
 }
 
@@ -103,8 +103,8 @@ fn outputs(job: &Job) -> String {
 }
 
 /// Where and why there, how fast, and how many bytes.
-fn how_it_ran<T>(ran: &Ran, baker: &Baker, outcome: &Outcome<T>) -> String {
-    let rate = ran.size.texels() as f64 / 1e6 / outcome.time.unwrap_or_default().as_secs_f64().max(1e-9);
+fn how_it_ran<T>(ran: &Ran, size: Size, baker: &Baker, outcome: &Outcome<T>) -> String {
+    let rate = size.texels() as f64 / 1e6 / outcome.time.unwrap_or_default().as_secs_f64().max(1e-9);
     format!(
         "{} ({}); {}, {rate:.1} Mtexel/s, {} in, {} out",
         ran.name(),
@@ -135,7 +135,7 @@ fn rows_of<'a>(files: impl Iterator<Item = (&'a Job, &'a Outcome)>) -> String {
     let mut table = plain_table(&["file", "size", "depth", "maps", "ms", "result"], &[4]);
     for (job, outcome) in files {
         let (size, depth) = match &outcome.result {
-            Ok(baked) => (baked.ran.size.to_string(), baked.height_type.to_string()),
+            Ok(baked) => (baked.size.to_string(), baked.height_type.to_string()),
             Err(_) => Default::default(),
         };
         let time = outcome.time.map_or(String::new(), |time| format!("{:.1}", time.as_secs_f64() * 1e3));

@@ -1,5 +1,6 @@
 //! What `exact` precision stands on: exact scales and correct rounding of A / sqrt(S).
 
+mod acos;
 mod float;
 mod rational;
 mod read;
@@ -7,6 +8,7 @@ mod round;
 mod scale;
 mod weights;
 
+pub(crate) use acos::acos;
 use float::Wide;
 pub(crate) use float::{nearest_f16, nearest_f32};
 pub use rational::Rational;

@@ -177,7 +177,7 @@ fn rows_give_the_bytes_of_maps() {
                 for (Subject { name, baker }, first_row_last) in ways {
                     let stream = Stream { first_row_last, ..Stream::new(map, options) };
                     let (ran, taken) = stream.bake(baker);
-                    let texbake::Baked { ran, height_type, scale } =
+                    let texbake::Baked { ran, size, height_type, scale } =
                         ran.unwrap_or_else(|error| panic!("{name}: {error}"));
                     let whole = baker.normal(map, &options).expect("a bake");
                     assert!(
@@ -189,7 +189,7 @@ fn rows_give_the_bytes_of_maps() {
                     let late = first_row_last && edge == Edge::Wrap && height > 1;
                     assert_eq!(taken.firsts[0], usize::from(late), "{name}: {:?}", taken.firsts);
                     assert_eq!(stream.monitor.texels(), map.size().texels() as u64, "{name}");
-                    assert_eq!((ran.size, height_type, ran.fallback), (map.size(), map.height_type(), None), "{name}");
+                    assert_eq!((size, height_type, ran.fallback), (map.size(), map.height_type(), None), "{name}");
                     assert_eq!((scale.x, scale.y, scale.q, scale.exact), (24, 24, 1, true), "{name}");
                 }
             }

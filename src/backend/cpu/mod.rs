@@ -36,6 +36,7 @@ use crate::map::{CodesMut, CodesRef};
 use crate::ops::bake::BakePlan;
 use crate::ops::blend::BlendPlan;
 use crate::ops::parallax::ParallaxPlan;
+use crate::ops::tangents::{self, TangentPlan};
 use crate::stream::{CodeSink, HeightBands, LayerBand, LayerBands};
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -176,6 +177,11 @@ impl Backend for Cpu {
                 });
             })?;
         }
+        Ok(())
+    }
+
+    fn tangents(&self, plan: &TangentPlan<'_>, out: &mut [[f32; 4]]) -> Result<()> {
+        tangents::tangents_of_fans(plan, out);
         Ok(())
     }
 }

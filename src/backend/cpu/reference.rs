@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::ops::bake::{self, BakePlan};
 use crate::ops::blend::{self, BlendPlan};
 use crate::ops::parallax::{self, ParallaxPlan};
+use crate::ops::tangents::{self, TangentPlan};
 use crate::stream::{CodeSink, HeightBands, LayerBands};
 
 /// Plain scalar code. Slow, and right by reading.
@@ -44,6 +45,11 @@ impl Backend for Reference {
                 parallax::codes_of_layers(plan, &band.layers, &mut maps[0])
             })?;
         }
+        Ok(())
+    }
+
+    fn tangents(&self, plan: &TangentPlan<'_>, out: &mut [[f32; 4]]) -> Result<()> {
+        tangents::tangents_of_fans(plan, out);
         Ok(())
     }
 }

@@ -28,6 +28,7 @@ use crate::error::{Error, Result};
 use crate::ops::bake::BakePlan;
 use crate::ops::blend::BlendPlan;
 use crate::ops::parallax::ParallaxPlan;
+use crate::ops::tangents::{self, TangentPlan};
 use crate::stream::{CodeSink, HeightBands, LayerBands};
 use device::Device;
 pub use hosted::{CodeTarget, HeightSource, Hosted, NormalBake};
@@ -141,6 +142,11 @@ impl Backend for Gpu {
 
     fn parallax(&self, plan: &ParallaxPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {
         self.run_layers(plan, bands, sink)
+    }
+
+    fn tangents(&self, plan: &TangentPlan<'_>, out: &mut [[f32; 4]]) -> Result<()> {
+        tangents::tangents_of_fans(plan, out);
+        Ok(())
     }
 }
 

@@ -1,0 +1,84 @@
+//! Which corners share a tangent.
+
+use super::{Surface, handedness};
+use crate::mesh::CornerAdjacency;
+use std::borrow::Cow;
+
+/// The corners that share a tangent, for each tangent.
+#[derive(Debug)]
+pub(crate) struct Fans<'a> {
+    /// The corners that each fan's tangent is made of, ascending; none where nothing has a direction.
+    pub corners: Cow<'a, CornerAdjacency>,
+    /// `None`: fan i belongs to vertex i and to all of its corners.
+    pub owners: Option<Owners>,
+}
+
+/// Whose tangents the fans are.
+#[derive(Debug)]
+pub(crate) struct Owners {
+    /// A vertex of each fan, for its normal.
+    pub vertices: Vec<u32>,
+    /// The fan of each corner of the mesh.
+    pub fans: Vec<u32>,
+}
+
+impl<'a> Fans<'a> {
+    /// A fan for each vertex, and one more for each that has triangles of either handedness.
+    ///
+    /// The triangles without area in the texture go with those that are not mirrored: they contribute nothing.
+    pub fn by_handedness(surface: &Surface<'_>, adjacency: &'a CornerAdjacency) -> Self {
+        use rayon::prelude::*;
+        let vertices = adjacency.rows();
+        let signs: Vec<i8> = (0..surface.triangles.len())
+            .into_par_iter()
+            .map(|triangle| handedness(surface.texture_edges(triangle)))
+            .collect();
+        let is_negative = |corner: u32| signs[corner as usize / 3] < 0;
+        let is_mixed = |vertex: usize| {
+            let row = adjacency.row(vertex);
+            row.iter().any(|&corner| is_negative(corner)) && row.iter().any(|&corner| signs[corner as usize / 3] > 0)
+        };
+        let mixed: Vec<u32> =
+            (0..vertices as u32).into_par_iter().filter(|&vertex| is_mixed(vertex as usize)).collect();
+        if mixed.is_empty() {
+            return Self { corners: Cow::Borrowed(adjacency), owners: None };
+        }
+
+        let mut fans = surface.triangles.as_flattened().to_vec();
+        for (&vertex, mirrored) in mixed.iter().zip(vertices as u32..) {
+            for &corner in adjacency.row(vertex as usize).iter().filter(|&&corner| is_negative(corner)) {
+                fans[corner as usize] = mirrored;
+            }
+        }
+        let mut offsets = vec![0];
+        let mut corners = Vec::with_capacity(adjacency.corners().len());
+        let owners: Vec<u32> = (0..vertices as u32).chain(mixed).collect();
+        for (&vertex, fan) in owners.iter().zip(0..) {
+            let row = adjacency.row(vertex as usize).iter();
+            corners.extend(row.filter(|&&corner| fans[corner as usize] == fan));
+            offsets.push(corners.len() as u32);
+        }
+        let corners = Cow::Owned(CornerAdjacency::from_rows(offsets, corners));
+        Self { corners, owners: Some(Owners { vertices: owners, fans }) }
+    }
+
+    /// MikkTSpace's groups.
+    pub fn of_mikktspace(surface: &Surface<'_>) -> Self {
+        let vertices = surface.positions.len();
+        let adjacency = CornerAdjacency::of_vertices(surface.triangles, vertices);
+        let owners =
+            Owners { vertices: (0..vertices as u32).collect(), fans: surface.triangles.as_flattened().to_vec() };
+        Self { corners: Cow::Owned(adjacency), owners: Some(owners) }
+    }
+
+    /// How many fans there are.
+    pub fn count(&self) -> usize {
+        self.corners.rows()
+    }
+
+    /// A vertex of a fan.
+    #[inline(always)]
+    pub fn vertex(&self, fan: usize) -> usize {
+        self.owners.as_ref().map_or(fan, |owners| owners.vertices[fan] as usize)
+    }
+}

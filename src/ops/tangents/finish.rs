@@ -1,0 +1,236 @@
+//! From the tangents of fans to those of vertices: directions for those that have none, seams, and splits.
+
+use super::seams::weld_seams;
+use super::{Fans, Shading, TangentOptions, cross, is_zero, project, times, unit};
+use crate::map::Convention;
+use crate::mesh::Mesh;
+
+/// Tangents of a mesh, whose vertices may have been split.
+///
+/// The first vertices are the mesh's own, in their order; those that follow are copies of some of them, for corners
+/// with another tangent or another normal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tangents {
+    /// Of each vertex: the tangent, a unit vector, and in w the sign of the bitangent, 1 or -1.
+    pub tangents: Vec<[f32; 4]>,
+    /// Of each vertex, if the mesh's own were missing or had to be repaired.
+    pub normals: Option<Vec<[f32; 3]>>,
+    /// The mesh's vertex that each of the vertices beyond its own is a copy of.
+    pub copies: Vec<u32>,
+    /// The vertices of each triangle; `None` if they are the mesh's own.
+    pub triangles: Option<Vec<[u32; 3]>>,
+    /// What was found on the way.
+    pub report: TangentReport,
+}
+
+/// What was found in a mesh, counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct TangentReport {
+    /// Triangles of the mesh.
+    pub triangles: usize,
+    /// Its vertices.
+    pub vertices: usize,
+    /// Copies of vertices that were made.
+    pub copies: usize,
+    /// Vertices shared by triangles of both handednesses, which were split: the mapping is mirrored there.
+    pub mirrored: usize,
+    /// Triangles without area in space.
+    pub without_area: usize,
+    /// Triangles without area in the texture.
+    pub without_texture_area: usize,
+    /// Triangles whose texture coordinates were unwrapped.
+    pub unwrapped: usize,
+    /// Vertices that no triangle uses; their tangent is any at a right angle to the normal.
+    pub unused: usize,
+    /// Vertices for which no direction was left: tangents cancel, or no triangle around has one. Their tangent is any
+    /// at a right angle to the normal.
+    pub undirected: usize,
+    /// Vertices whose normal was missing or zero.
+    pub normals_made: usize,
+    /// Vertices whose normal was not of unit length.
+    pub normals_normalised: usize,
+    /// Vertices whose tangent was set equal to another's across a seam.
+    pub welded: usize,
+}
+
+impl Tangents {
+    /// The mesh's vertex that each vertex is.
+    pub fn sources(&self) -> impl Iterator<Item = u32> {
+        let own = (self.tangents.len() - self.copies.len()) as u32;
+        (0..own).chain(self.copies.iter().copied())
+    }
+
+    /// The bitangent of each vertex, w (n x t) (FGED2 eq. 7.40).
+    ///
+    /// `mesh` is the one that the tangents are of.
+    pub fn bitangents(&self, mesh: &Mesh) -> Vec<[f32; 3]> {
+        let normal = |(vertex, source): (usize, u32)| match (&self.normals, mesh.normals()) {
+            (Some(normals), _) => normals[vertex],
+            (None, Some(normals)) => normals[source as usize],
+            (None, None) => unreachable!("the normals of a mesh without any were made"),
+        };
+        let normals = self.sources().enumerate().map(normal);
+        normals.zip(&self.tangents).map(|(n, &[x, y, z, w])| times(w, cross(n, [x, y, z]))).collect()
+    }
+
+    /// Three components: the sign is the lowest bit of x, 1 for minus (FGED2 section 7.5). It moves x by at most one
+    /// step of a float.
+    pub fn with_sign_in_lowest_bit(&self) -> Vec<[f32; 3]> {
+        let packed = |&[x, y, z, w]: &[f32; 4]| [f32::from_bits((x.to_bits() & !1) | u32::from(w < 0.0)), y, z];
+        self.tangents.iter().map(packed).collect()
+    }
+}
+
+/// Gives each vertex of `mesh` the tangent of its corners' fan, and splits it where they differ.
+pub(crate) fn finish(
+    mesh: &Mesh,
+    shading: &Shading<'_>,
+    fans: &Fans<'_>,
+    mut of_fans: Vec<[f32; 4]>,
+    options: &TangentOptions,
+) -> Tangents {
+    let is_directed: Vec<bool> = of_fans.iter().map(|&[x, y, z, _]| !is_zero([x, y, z])).collect();
+    for (fan, tangent) in of_fans.iter_mut().enumerate() {
+        let [x, y, z, w] = *tangent;
+        let [x, y, z] = if is_directed[fan] { [x, y, z] } else { across(shading.normals[fans.vertex(fan)]) };
+        // Green up is against v.
+        *tangent = [x, y, z, if options.convention == Convention::Gl { -w } else { w }];
+    }
+    let mut vertices = if fans.owners.is_none() && !shading.has_own_vertices {
+        Vertices::unsplit(mesh, shading, of_fans, is_directed)
+    } else {
+        Vertices::split(mesh, shading, fans, &of_fans, &is_directed)
+    };
+    let welded = options.weld_seams.map_or(0, |angle| weld_seams(mesh, &mut vertices, angle));
+    let report = TangentReport {
+        triangles: mesh.triangles().len(),
+        vertices: mesh.positions().len(),
+        copies: vertices.copies.len(),
+        mirrored: vertices.mirrored,
+        unused: vertices.unused,
+        undirected: vertices.is_directed.iter().filter(|&&is_directed| !is_directed).count() - vertices.unused,
+        normals_made: shading.made,
+        normals_normalised: shading.normalised,
+        welded,
+        ..TangentReport::default()
+    };
+    let has_own_normals = shading.made + shading.normalised == 0;
+    Tangents {
+        tangents: vertices.tangents,
+        normals: (!has_own_normals).then_some(vertices.normals),
+        copies: vertices.copies,
+        triangles: vertices.triangles,
+        report,
+    }
+}
+
+/// Vertices with one normal and one tangent each: the mesh's own, then copies.
+pub(super) struct Vertices {
+    pub tangents: Vec<[f32; 4]>,
+    pub normals: Vec<[f32; 3]>,
+    /// Whether the tangent is more than any at a right angle to the normal.
+    pub is_directed: Vec<bool>,
+    /// The mesh's vertex that each copy is of.
+    pub copies: Vec<u32>,
+    /// `None` if they are the mesh's own.
+    pub triangles: Option<Vec<[u32; 3]>>,
+    /// Vertices that were split because their corners differ in handedness.
+    pub mirrored: usize,
+    /// Vertices that no triangle uses.
+    pub unused: usize,
+}
+
+/// No copy.
+const NONE: u32 = u32::MAX;
+
+impl Vertices {
+    /// Each fan is a vertex.
+    fn unsplit(mesh: &Mesh, shading: &Shading<'_>, tangents: Vec<[f32; 4]>, is_directed: Vec<bool>) -> Self {
+        let unused = if is_directed.iter().all(|&is_directed| is_directed) {
+            0
+        } else {
+            let mut is_used = vec![false; tangents.len()];
+            mesh.triangles().as_flattened().iter().for_each(|&vertex| is_used[vertex as usize] = true);
+            is_used.iter().filter(|&&is_used| !is_used).count()
+        };
+        let normals = shading.normals.to_vec();
+        Self { tangents, normals, is_directed, copies: Vec::new(), triangles: None, mirrored: 0, unused }
+    }
+
+    /// Each vertex takes the normal and the tangent of its first corner; corners that have others become copies.
+    fn split(
+        mesh: &Mesh,
+        shading: &Shading<'_>,
+        fans: &Fans<'_>,
+        of_fans: &[[f32; 4]],
+        fan_is_directed: &[bool],
+    ) -> Self {
+        let own = mesh.positions().len();
+        let mut this = Self {
+            tangents: vec![[0.0; 4]; own],
+            normals: vec![[0.0; 3]; own],
+            is_directed: vec![false; own],
+            copies: Vec::new(),
+            triangles: None,
+            mirrored: 0,
+            unused: 0,
+        };
+        let (mut is_used, mut is_mirrored) = (vec![false; own], vec![false; own]);
+        // The next copy of the same vertex.
+        let mut next = vec![NONE; own];
+        let mut triangles = mesh.triangles().to_vec();
+        let shaded = shading.mesh.triangles().as_flattened();
+        for (corner, index) in triangles.as_flattened_mut().iter_mut().enumerate() {
+            let shaded = shaded[corner];
+            let fan = fans.owners.as_ref().map_or(shaded, |owners| owners.fans[corner]) as usize;
+            let (normal, tangent) = (shading.normals[shaded as usize], of_fans[fan]);
+            let vertex = *index as usize;
+            if !is_used[vertex] {
+                is_used[vertex] = true;
+                (this.normals[vertex], this.tangents[vertex]) = (normal, tangent);
+                this.is_directed[vertex] = fan_is_directed[fan];
+                continue;
+            }
+            let mut at = vertex;
+            while (bits(this.normals[at]), bits(this.tangents[at])) != (bits(normal), bits(tangent)) {
+                if next[at] == NONE {
+                    next[at] = this.tangents.len() as u32;
+                    next.push(NONE);
+                    this.normals.push(normal);
+                    this.tangents.push(tangent);
+                    this.is_directed.push(fan_is_directed[fan]);
+                    this.copies.push(*index);
+                }
+                at = next[at] as usize;
+                is_mirrored[vertex] |= this.tangents[vertex][3] != tangent[3];
+            }
+            *index = at as u32;
+        }
+        for (vertex, _) in is_used.iter().enumerate().filter(|(_, is_used)| !**is_used) {
+            this.normals[vertex] = if shading.has_own_vertices { [0.0, 0.0, 1.0] } else { shading.normals[vertex] };
+            let [x, y, z] = across(this.normals[vertex]);
+            this.tangents[vertex] = [x, y, z, 1.0];
+            this.unused += 1;
+        }
+        this.mirrored = is_mirrored.iter().filter(|&&is_mirrored| is_mirrored).count();
+        this.triangles = (!this.copies.is_empty()).then_some(triangles);
+        this
+    }
+}
+
+fn bits<const N: usize>(vector: [f32; N]) -> [u32; N] {
+    vector.map(f32::to_bits)
+}
+
+/// A unit vector at a right angle to n: the axis that is furthest from it, projected.
+fn across(n: [f32; 3]) -> [f32; 3] {
+    let [x, y, z] = n.map(f32::abs);
+    let axis = if x <= y && x <= z {
+        [1.0, 0.0, 0.0]
+    } else if y <= z {
+        [0.0, 1.0, 0.0]
+    } else {
+        [0.0, 0.0, 1.0]
+    };
+    unit(project(n, axis))
+}

@@ -1,0 +1,45 @@
+//! Duplicates at one position whose tangents are nearly equal become equal (FGED2, end of section 7.5).
+
+use super::finish::Vertices;
+use super::{add, dot, project, unit};
+use crate::mesh::Mesh;
+use std::collections::HashMap;
+
+/// Averages the tangents of vertices that have position, normal and handedness in common and lie at most `degrees`
+/// from the first of them that has not been averaged. Tells how many vertices have another tangent now.
+pub(super) fn weld_seams(mesh: &Mesh, vertices: &mut Vertices, degrees: f32) -> usize {
+    let own = mesh.positions().len();
+    // Minus zero is zero.
+    let bits = |v: [f32; 3]| v.map(|part| (part + 0.0).to_bits());
+    let mut places = HashMap::<_, Vec<usize>>::new();
+    for vertex in (0..vertices.tangents.len()).filter(|&vertex| vertices.is_directed[vertex]) {
+        let source = vertex.checked_sub(own).map_or(vertex, |copy| vertices.copies[copy] as usize);
+        let place =
+            (bits(mesh.positions()[source]), bits(vertices.normals[vertex]), vertices.tangents[vertex][3] > 0.0);
+        places.entry(place).or_default().push(vertex);
+    }
+
+    let least = libm::cosf(degrees.to_radians());
+    let mut welded = 0;
+    for mut rest in places.into_values().filter(|vertices| vertices.len() > 1) {
+        while let [first, ..] = rest[..] {
+            let direction = |vertex: usize| {
+                let [x, y, z, _] = vertices.tangents[vertex];
+                [x, y, z]
+            };
+            let is_near = |&vertex: &usize| vertex == first || dot(direction(first), direction(vertex)) >= least;
+            let (near, far): (Vec<usize>, Vec<usize>) = rest.iter().partition(|vertex| is_near(vertex));
+            let sum = near.iter().fold([0.0; 3], |sum, &vertex| add(sum, direction(vertex)));
+            let [x, y, z] = unit(project(vertices.normals[first], sum));
+            for &vertex in &near {
+                let tangent = [x, y, z, vertices.tangents[vertex][3]];
+                if near.len() > 1 && tangent != vertices.tangents[vertex] {
+                    vertices.tangents[vertex] = tangent;
+                    welded += 1;
+                }
+            }
+            rest = far;
+        }
+    }
+    welded
+}

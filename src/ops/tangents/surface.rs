@@ -1,0 +1,117 @@
+//! A mesh as the formulas see it: at one scale, with a normal for every vertex.
+
+use super::sub;
+use crate::mesh::Mesh;
+
+/// A mesh at a scale of which no formula overflows.
+///
+/// Positions and texture coordinates are multiplied by powers of two that bring the greatest of each between 2^20 and
+/// 2^21 in magnitude: a mesh of 1e20 and one of 1e-20 have the same bits here. Below 2^-106 (1e-32) the power ends
+/// at 2^126.
+#[derive(Debug)]
+pub(crate) struct Surface<'a> {
+    pub positions: &'a [[f32; 3]],
+    pub position_scale: f32,
+    pub normals: &'a [[f32; 3]],
+    pub texcoords: &'a [[f32; 2]],
+    pub texcoord_scale: f32,
+    /// Whether differences of texture coordinates are brought between -1/2 and 1/2 by adding or subtracting 1.
+    pub unwrap: bool,
+    pub triangles: &'a [[u32; 3]],
+}
+
+/// Two edges of a triangle from its corner 0, in space and in texture (FGED2 eq. 7.34).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TriangleEdges {
+    pub e1: [f32; 3],
+    pub e2: [f32; 3],
+    /// (x1, y1).
+    pub d1: [f32; 2],
+    /// (x2, y2).
+    pub d2: [f32; 2],
+}
+
+impl<'a> Surface<'a> {
+    /// A mesh with these normals; the mesh's own are not looked at.
+    pub fn new(mesh: &'a Mesh, normals: &'a [[f32; 3]], unwrap: bool) -> Self {
+        Self {
+            positions: mesh.positions(),
+            position_scale: scale(mesh.positions()),
+            normals,
+            texcoords: mesh.texcoords(),
+            texcoord_scale: scale(mesh.texcoords()),
+            unwrap,
+            triangles: mesh.triangles(),
+        }
+    }
+
+    /// A vertex's position, scaled.
+    #[inline(always)]
+    pub fn position(&self, vertex: u32) -> [f32; 3] {
+        let [x, y, z] = self.positions[vertex as usize];
+        [x * self.position_scale, y * self.position_scale, z * self.position_scale]
+    }
+
+    /// Scaled positions of a corner, of the next one of its triangle and of the one before.
+    #[inline(always)]
+    pub fn corner_positions(&self, corner: u32) -> [[f32; 3]; 3] {
+        let [a, b, c] = self.triangles[corner as usize / 3].map(|vertex| self.position(vertex));
+        match corner % 3 {
+            0 => [a, b, c],
+            1 => [b, c, a],
+            _ => [c, a, b],
+        }
+    }
+
+    /// The edges of a triangle, scaled.
+    #[inline(always)]
+    pub fn edges(&self, triangle: usize) -> TriangleEdges {
+        let [p0, p1, p2] = self.triangles[triangle].map(|vertex| self.position(vertex));
+        let [d1, d2] = self.texture_edges(triangle);
+        TriangleEdges { e1: sub(p1, p0), e2: sub(p2, p0), d1, d2 }
+    }
+
+    /// (x1, y1) and (x2, y2) of a triangle, scaled and, if asked for, unwrapped.
+    #[inline(always)]
+    pub fn texture_edges(&self, triangle: usize) -> [[f32; 2]; 2] {
+        let scale = self.texcoord_scale;
+        let [a, b, c] = self.triangles[triangle].map(|vertex| {
+            let [u, v] = self.texcoords[vertex as usize];
+            [u * scale, v * scale]
+        });
+        let difference = |to: [f32; 2], from: [f32; 2]| [self.wrapped(to[0] - from[0]), self.wrapped(to[1] - from[1])];
+        [difference(b, a), difference(c, a)]
+    }
+
+    /// A difference of texture coordinates across the shorter way round, if that is asked for.
+    #[inline(always)]
+    fn wrapped(&self, difference: f32) -> f32 {
+        let half = 0.5 * self.texcoord_scale;
+        match difference {
+            d if self.unwrap && d > half => d - self.texcoord_scale,
+            d if self.unwrap && d < -half => d + self.texcoord_scale,
+            d => d,
+        }
+    }
+}
+
+/// The power of two that brings the greatest magnitude between 2^20 and 2^21.
+pub(super) fn scale<const N: usize>(vectors: &[[f32; N]]) -> f32 {
+    let greatest = vectors.as_flattened().iter().fold(0.0, |greatest: f32, value| greatest.max(value.abs()));
+    let exponent = (greatest.to_bits() >> 23) as i32 - 127;
+    2f32.powi((20 - exponent).min(126))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::scale;
+
+    #[test]
+    fn the_scale_is_a_power_of_two_at_any_size() {
+        assert_eq!(scale(&[[0.0, -1.5, 1.0]]), 2f32.powi(20));
+        assert_eq!(scale(&[[3.0e20]]), 2f32.powi(20 - 68));
+        assert_eq!(scale(&[[f32::MAX]]), 2f32.powi(20 - 127));
+        assert_eq!(scale(&[[1e-35]]), 2f32.powi(126));
+        assert_eq!([scale::<2>(&[]), scale(&[[0.0]])], [2f32.powi(126); 2]);
+    }
+}
