@@ -78,6 +78,9 @@
 //! | a float normal with a component that is NaN, infinite or beyond 65536 | [`Error::NoDirection`] names the first |
 //! | float components of normals below 2^-25 in magnitude | count as zero |
 
+#[macro_use]
+mod vectorised;
+
 mod backend;
 mod baker;
 #[cfg(feature = "cli")]

@@ -13,8 +13,6 @@
 //! Components of integer maps are estimates whose error is bounded. Where that bound leaves a code in doubt, integers
 //! decide.
 
-#[macro_use]
-mod vectorised;
 mod bake;
 mod blend;
 mod f16_bits;
@@ -41,6 +39,7 @@ use crate::ops::blend::BlendPlan;
 use crate::ops::parallax::ParallaxPlan;
 use crate::ops::tangents::TangentPlan;
 use crate::stream::{CodeSink, HeightBands, LayerBand, LayerBands};
+use crate::vectorised;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 

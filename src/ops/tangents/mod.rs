@@ -17,6 +17,7 @@ mod reference;
 mod seams;
 mod shading;
 mod surface;
+mod triangles;
 
 pub(crate) use faces::Faces;
 pub(crate) use fans::Fans;
@@ -27,6 +28,7 @@ pub use options::{MissingNormals, TangentMethod, TangentOptions};
 pub(crate) use reference::tangents_of_fans;
 pub(crate) use shading::Shading;
 pub(crate) use surface::{Surface, TriangleEdges};
+pub(crate) use triangles::{BLOCK, Plane, Triangles};
 
 use super::Precision;
 

@@ -99,12 +99,6 @@ impl<'a> Surface<'a> {
         ]
     }
 
-    /// Whether one of a triangle's differences of texture coordinates has lost or gained 1.
-    #[inline(always)]
-    pub fn is_unwrapped(&self, triangle: usize) -> bool {
-        self.unwrap && Surface { unwrap: false, ..*self }.texture_edges(triangle) != self.texture_edges(triangle)
-    }
-
     /// A difference of texture coordinates across the shorter way round, if that is asked for.
     #[inline(always)]
     fn wrapped(&self, difference: f32) -> f32 {

@@ -1,8 +1,9 @@
 //! Lengyel's and Hegde's methods: a frame for each triangle, and their sums.
 
-use super::triangles::Triangles;
-use super::{BLOCK, Plane, fill_blocks, of_blocks};
-use crate::ops::tangents::{Fans, Frame, FrameSum, Surface, TangentMethod, TangentPlan, frame};
+use super::{fill_blocks, of_blocks};
+use crate::ops::tangents::{
+    BLOCK, Fans, Frame, FrameSum, Plane, Surface, TangentMethod, TangentPlan, Triangles, frame,
+};
 
 /// What a triangle gives: t, b and the magnitude of t. Half a cache line, which one instruction adds.
 #[derive(Debug, Clone, Copy)]

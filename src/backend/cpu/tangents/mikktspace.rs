@@ -1,11 +1,10 @@
 //! MikkTSpace's method: a share for each corner, and their sums.
 
-use super::triangles::Triangles;
-use super::{BLOCK, Plane, fill_blocks, of_blocks};
+use super::{fill_blocks, of_blocks};
 use crate::exact::{acos, acos_estimate, is_in_doubt};
 use crate::ops::tangents::{
-    Fans, Surface, TangentMethod, TangentPlan, add, frame, mikktspace_area, mikktspace_cosine, project, sign, times,
-    unit,
+    BLOCK, Fans, Plane, Surface, TangentMethod, TangentPlan, Triangles, add, frame, mikktspace_area, mikktspace_cosine,
+    project, sign, times, unit,
 };
 
 /// What a corner adds to its fan's tangent, and in w its triangle's handedness.
@@ -15,9 +14,10 @@ type Share = [f32; 4];
 struct Room {
     triangles: Triangles,
     normals: [[Plane; 3]; 3],
-    cosines: [Plane; 3],
-    directions: [[Plane; 3]; 3],
+    s: [Plane; 3],
     signs: Plane,
+    angles: Plane,
+    of_corner: [Share; BLOCK],
     shares: [[Share; 3]; BLOCK],
 }
 
@@ -26,9 +26,10 @@ impl Default for Room {
         Self {
             triangles: Triangles::default(),
             normals: [[[0.0; BLOCK]; 3]; 3],
-            cosines: [[0.0; BLOCK]; 3],
-            directions: [[[0.0; BLOCK]; 3]; 3],
+            s: [[0.0; BLOCK]; 3],
             signs: [0.0; BLOCK],
+            angles: [0.0; BLOCK],
+            of_corner: [[0.0; 4]; BLOCK],
             shares: [[[0.0; 4]; 3]; BLOCK],
         }
     }
@@ -47,43 +48,46 @@ pub(super) fn tangents(plan: &TangentPlan<'_>, tangents: &mut [[f32; 4]]) {
 
 vectorised! {
     fn shares_of_block(surface: &Surface<'_>, fans: &Fans<'_>, first: usize, room: &mut Room) {
-        let Room { triangles, normals, cosines, directions, signs, shares } = room;
+        let Room { triangles, normals, s, signs, angles, of_corner, shares } = room;
         triangles.gather(surface, first);
         gather_normals(surface, fans, first, normals);
-        for i in 0..BLOCK {
-            let edges = triangles.edges(surface, i);
-            signs[i] = sign(mikktspace_area([edges.d1, edges.d2]));
-            let s = frame(TangentMethod::Mikktspace, &edges).t;
-            let scale = surface.position_scale;
-            let a = times(scale, triangles.position(0, i));
-            let b = times(scale, triangles.position(1, i));
-            let c = times(scale, triangles.position(2, i));
-            let around = [[a, b, c], [b, c, a], [c, a, b]];
-            for corner in 0..3 {
-                let [x, y, z] = &normals[corner];
-                let n = [x[i], y[i], z[i]];
-                cosines[corner][i] = mikktspace_cosine(n, around[corner]);
-                let direction = unit(project(n, s));
-                for axis in 0..3 {
-                    directions[corner][axis][i] = direction[axis];
-                }
-            }
-        }
-        for corner in 0..3 {
-            let angles = angles(&cosines[corner]);
-            let [x, y, z] = &directions[corner];
+        directions(surface, triangles, s, signs);
+        for (corner, normals) in normals.iter().enumerate() {
+            cosines(surface.position_scale, triangles, corner, normals, angles);
+            cosines_to_angles(angles);
+            shares_of_corner(normals, s, angles, signs, of_corner);
             for i in 0..BLOCK {
-                let share = times(angles[i], [x[i], y[i], z[i]]);
-                shares[i][corner] = [share[0], share[1], share[2], signs[i]];
+                shares[i][corner] = of_corner[i];
             }
         }
     }
 }
 
-/// The angle of each cosine: estimated, and where that leaves doubt, computed in integers.
+/// The direction in which each triangle's u grows, and its handedness.
 #[inline(always)]
-fn angles(cosines: &Plane) -> Plane {
-    let mut angles = [0.0; BLOCK];
+fn directions(surface: &Surface<'_>, triangles: &Triangles, s: &mut [Plane; 3], signs: &mut Plane) {
+    for i in 0..BLOCK {
+        let edges = triangles.edges(surface, i);
+        signs[i] = sign(mikktspace_area([edges.d1, edges.d2]));
+        [s[0][i], s[1][i], s[2][i]] = frame(TangentMethod::Mikktspace, &edges).t;
+    }
+}
+
+/// The cosine of the angle at a corner of each triangle.
+#[inline(always)]
+fn cosines(scale: f32, triangles: &Triangles, corner: usize, normals: &[Plane; 3], cosines: &mut Plane) {
+    let [next, previous] = [(corner + 1) % 3, (corner + 2) % 3];
+    for i in 0..BLOCK {
+        let position = |corner| times(scale, triangles.position(corner, i));
+        let n = [normals[0][i], normals[1][i], normals[2][i]];
+        cosines[i] = mikktspace_cosine(n, [position(corner), position(next), position(previous)]);
+    }
+}
+
+/// Estimates the angles, and where that leaves doubt, computes them in integers.
+#[inline(always)]
+fn cosines_to_angles(angles: &mut Plane) {
+    let cosines = *angles;
     let mut doubts = 0;
     for i in 0..BLOCK {
         let estimate = acos_estimate(cosines[i]);
@@ -95,7 +99,20 @@ fn angles(cosines: &Plane) -> Plane {
             angles[i] = acos(cosines[i]);
         }
     }
-    angles
+}
+
+/// What each triangle adds at a corner.
+#[inline(always)]
+fn shares_of_corner(normals: &[Plane; 3], s: &[Plane; 3], angles: &Plane, signs: &Plane, shares: &mut [Share; BLOCK]) {
+    let mut planes: [Plane; 3] = [[0.0; BLOCK]; 3];
+    for i in 0..BLOCK {
+        let n = [normals[0][i], normals[1][i], normals[2][i]];
+        let direction = unit(project(n, [s[0][i], s[1][i], s[2][i]]));
+        [planes[0][i], planes[1][i], planes[2][i]] = times(angles[i], direction);
+    }
+    for i in 0..BLOCK {
+        shares[i] = [planes[0][i], planes[1][i], planes[2][i], signs[i]];
+    }
 }
 
 /// The normal of each corner's fan, for the triangles from `first`.

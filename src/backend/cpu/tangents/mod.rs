@@ -9,19 +9,12 @@
 
 mod frames;
 mod mikktspace;
-mod triangles;
 
-use crate::ops::tangents::{TangentMethod, TangentPlan};
+use crate::ops::tangents::{BLOCK, TangentMethod, TangentPlan};
 use rayon::prelude::*;
-
-/// Triangles or fans of a block: their numbers, planar, stay in the first cache.
-const BLOCK: usize = 64;
 
 /// Blocks that take one thread less time than it takes to wake others: some 20 microseconds.
 const FEW: usize = 32;
-
-/// A number for each triangle or fan of a block.
-type Plane = [f32; BLOCK];
 
 /// Whether a plan is worth more than one thread.
 pub(super) fn is_large(plan: &TangentPlan<'_>) -> bool {

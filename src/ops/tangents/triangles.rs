@@ -1,11 +1,16 @@
 //! A block of triangles, gathered.
 
-use super::{BLOCK, Plane};
-use crate::ops::tangents::{Surface, TriangleEdges};
+use super::{Surface, TriangleEdges};
+
+/// Triangles or fans of a block: their numbers, planar, stay in the first cache.
+pub(crate) const BLOCK: usize = 64;
+
+/// A number for each triangle or fan of a block.
+pub(crate) type Plane = [f32; BLOCK];
 
 /// Positions and texture coordinates of a block of triangles, as the mesh has them; beyond the last triangle those of
 /// any other, or zeros.
-pub(super) struct Triangles {
+pub(crate) struct Triangles {
     positions: [[Plane; 3]; 3],
     texcoords: [[Plane; 2]; 3],
 }
