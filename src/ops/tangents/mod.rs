@@ -11,6 +11,7 @@ mod faces;
 mod fans;
 mod finish;
 mod formula;
+mod mikktspace;
 mod options;
 mod pieces;
 mod reference;
