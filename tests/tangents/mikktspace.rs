@@ -1,0 +1,1 @@
+//! MikkTSpace against its own implementations.
