@@ -62,15 +62,6 @@ impl<'a> Fans<'a> {
         Self { corners, owners: Some(Owners { vertices: owners, fans }) }
     }
 
-    /// MikkTSpace's groups.
-    pub fn of_mikktspace(surface: &Surface<'_>) -> Self {
-        let vertices = surface.positions.len();
-        let adjacency = CornerAdjacency::of_vertices(surface.triangles, vertices);
-        let owners =
-            Owners { vertices: (0..vertices as u32).collect(), fans: surface.triangles.as_flattened().to_vec() };
-        Self { corners: Cow::Owned(adjacency), owners: Some(owners) }
-    }
-
     /// How many fans there are.
     pub fn count(&self) -> usize {
         self.corners.rows()

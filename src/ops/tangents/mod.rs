@@ -10,6 +10,7 @@
 mod fans;
 mod finish;
 mod formula;
+mod mikktspace;
 mod options;
 mod reference;
 mod seams;
