@@ -21,7 +21,7 @@ pub use integer::{image, ties};
 pub use parallax::{parallax, parallax_with_normals};
 pub use real::{RealNormal, real_normals};
 pub use slopes::slope_sums;
-pub use tangents::{RealTangent, TangentFormula, real_tangents};
+pub use tangents::{TangentFormula, real_tangents};
 pub use texels::{UnormZero, components};
 
 use crate::support::Image;

@@ -159,14 +159,14 @@ pub fn uneven(columns: u32, rows: u32) -> Mesh {
     })
 }
 
-/// A disc around vertex 0 in the plane z = 0, whose u grows outwards everywhere: around the middle the tangents cancel.
+/// A disc around vertex 0 in the plane z = 0, whose u grows outwards: around the middle the tangents cancel, once v's
+/// jump from 1 to 0 is unwrapped.
 pub fn pole(around: u32) -> Mesh {
     let mut points = vec![([0.0, 0.0], [0.0, 0.5])];
     for step in 0..around {
         let (sin, cos) = (TAU * f64::from(step) / f64::from(around)).sin_cos();
-        points.push(([cos as f32, sin as f32], [1.0, step as f32 / around as f32]));
+        points.push(([cos as f32, sin as f32], [0.25, step as f32 / around as f32]));
     }
-    // All triangles have the last but one edge on the rim; v falls in every one.
     let triangles = (0..around).map(|step| [0, 1 + step, 1 + (step + 1) % around]).collect();
     flat_mesh(&points, triangles)
 }

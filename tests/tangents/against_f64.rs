@@ -22,7 +22,10 @@ fn unshared(mesh: &Mesh) -> Mesh {
     Mesh::new(positions, texcoords, triangles).expect("a mesh")
 }
 
-/// Counts of corners: compared with a direction, without one, and of these with a handedness.
+/// Angles that f32 may be off by above this prove nothing: a triangle is a sliver there.
+const NO_PROOF: f64 = 1e-3;
+
+/// Counts of corners: compared, without a direction or proof, and of those compared the ones with a handedness.
 fn compare(name: &str, mesh: &Mesh, options: &TangentOptions) -> [usize; 3] {
     let made = tangents(mesh, options);
     let corners = corners(mesh, &made);
@@ -33,14 +36,13 @@ fn compare(name: &str, mesh: &Mesh, options: &TangentOptions) -> [usize; 3] {
     let [mut directed, mut undirected, mut handed] = [0; 3];
     for (at, (got, expected)) in corners.iter().zip(&expected).enumerate() {
         let what = || format!("{name}, {}, triangle {}, corner {}", options.method, at / 3, at % 3);
-        let Some(t) = expected.t else {
+        let Some(t) = expected.t.filter(|_| expected.bound < NO_PROOF) else {
             undirected += 1;
             continue;
         };
         directed += 1;
         let off = angle(direction(got.tangent), t);
         assert!(off <= expected.bound, "{}: {got:?} is off by {off:e}, above {:e}", what(), expected.bound);
-        assert!(expected.bound < 1e-3, "{}: a bound of {:e} proves nothing", what(), expected.bound);
         if expected.determinant.abs() > 1e-4 {
             handed += 1;
             assert_eq!(f64::from(got.tangent[3]), expected.determinant.signum(), "{}: {got:?}", what());

@@ -93,13 +93,12 @@ pub(crate) fn finish(
     for (fan, tangent) in of_fans.iter_mut().enumerate() {
         let [x, y, z, w] = *tangent;
         let [x, y, z] = if is_directed[fan] { [x, y, z] } else { across(shading.normals[fans.vertex(fan)]) };
-        // Green up is against v.
-        *tangent = [x, y, z, if options.convention == Convention::Gl { -w } else { w }];
+        *tangent = [x, y, z, sign_of_green(options.convention, w)];
     }
     let mut vertices = if fans.owners.is_none() && !shading.has_own_vertices {
         Vertices::unsplit(mesh, shading, of_fans, is_directed)
     } else {
-        Vertices::split(mesh, shading, fans, &of_fans, &is_directed)
+        Vertices::split(mesh, shading, fans, &of_fans, &is_directed, options.convention)
     };
     let welded = options.weld_seams.map_or(0, |angle| weld_seams(mesh, &mut vertices, angle));
     let report = TangentReport {
@@ -164,6 +163,7 @@ impl Vertices {
         fans: &Fans<'_>,
         of_fans: &[[f32; 4]],
         fan_is_directed: &[bool],
+        convention: Convention,
     ) -> Self {
         let own = mesh.positions().len();
         let mut this = Self {
@@ -202,19 +202,32 @@ impl Vertices {
                     this.copies.push(*index);
                 }
                 at = next[at] as usize;
-                is_mirrored[vertex] |= this.tangents[vertex][3] != tangent[3];
+                // Where there is no direction, there is no handedness either.
+                let are_directed = this.is_directed[vertex] && fan_is_directed[fan];
+                is_mirrored[vertex] |= are_directed && this.tangents[vertex][3] != tangent[3];
             }
             *index = at as u32;
         }
         for (vertex, _) in is_used.iter().enumerate().filter(|(_, is_used)| !**is_used) {
             this.normals[vertex] = if shading.has_own_vertices { [0.0, 0.0, 1.0] } else { shading.normals[vertex] };
             let [x, y, z] = across(this.normals[vertex]);
-            this.tangents[vertex] = [x, y, z, 1.0];
+            this.tangents[vertex] = [x, y, z, sign_of_green(convention, NO_SIGN)];
             this.unused += 1;
         }
         this.mirrored = is_mirrored.iter().filter(|&&is_mirrored| is_mirrored).count();
         this.triangles = (!this.copies.is_empty()).then_some(triangles);
         this
+    }
+}
+
+/// What w is, as to growing v, where nothing decides.
+const NO_SIGN: f32 = -1.0;
+
+/// The sign of the bitangent of a normal map, for the sign w of one along growing v: green up is against v.
+fn sign_of_green(convention: Convention, w: f32) -> f32 {
+    match convention {
+        Convention::Gl => -w,
+        Convention::Dx => w,
     }
 }
 
