@@ -92,7 +92,7 @@ fn a_sphere_away_from_its_poles_and_a_torus_converge_to_du() {
         let once_around = |mesh: Mesh| changed(&mesh, |p| p, |n| n, |[u, v]| [u / 3.0, v]);
         let coarse = greatest_error(&once_around(torus(24, 16)), method);
         let fine = greatest_error(&once_around(torus(48, 32)), method);
-        assert!(coarse < 0.05 && fine < 0.3 * coarse, "torus, {method}: {coarse} and {fine}");
+        assert!(coarse < 0.05 && (fine < 0.3 * coarse || fine < 1e-6), "torus, {method}: {coarse} and {fine}");
     }
 }
 

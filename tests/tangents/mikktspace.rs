@@ -99,7 +99,11 @@ fn far_from_meshopt(mesh: &Mesh) -> usize {
     let other = meshopt_tangents(mesh, &made);
     let is_far = |(corner, other): &(&Corner, &[f32; 4])| {
         let off = angle(direction(corner.tangent), direction(**other)).to_degrees();
-        off > 1e-3 || corner.tangent[3] != other[3]
+        let is_far = off > 1e-3 || corner.tangent[3] != other[3];
+        if is_far {
+            println!("{off} degrees: got {corner:?}, meshopt {other:?}");
+        }
+        is_far
     };
     assert!(!other.is_empty());
     made.iter().zip(&other).filter(is_far).count()
