@@ -165,14 +165,19 @@ pub(crate) fn project(n: [f32; 3], v: [f32; 3]) -> [f32; 3] {
 /// would, the bits are those of v times the inverse of its length.
 #[inline(always)]
 pub(crate) fn unit(v: [f32; 3]) -> [f32; 3] {
-    let greatest = (v[0].to_bits() & MAGNITUDE).max(v[1].to_bits() & MAGNITUDE).max(v[2].to_bits() & MAGNITUDE);
-    if greatest == 0 {
+    let v = scaled_to_one(v);
+    if is_zero(v) {
         return [0.0; 3];
     }
-    // 2^-e for a greatest component from 2^e to 2^(e + 1); 2^-126, the least that is no subnormal, for 2^127.
-    let factor = f32::from_bits(((254 << 23) - (greatest & EXPONENT)).max(1 << 23));
-    let v = times(factor, v);
     times(1.0 / dot(v, v).sqrt(), v)
+}
+
+/// v times a power of two that brings its greatest component from 1 to 2, or nearer to it if that is subnormal.
+#[inline(always)]
+pub(crate) fn scaled_to_one(v: [f32; 3]) -> [f32; 3] {
+    let greatest = (v[0].to_bits() & MAGNITUDE).max(v[1].to_bits() & MAGNITUDE).max(v[2].to_bits() & MAGNITUDE);
+    // 2^-e for a greatest component from 2^e to 2^(e + 1); 2^-126, the least that is no subnormal, for 2^127.
+    times(f32::from_bits(((254 << 23) - (greatest & EXPONENT)).max(1 << 23)), v)
 }
 
 const MAGNITUDE: u32 = 0x7fff_ffff;

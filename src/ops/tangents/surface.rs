@@ -1,5 +1,6 @@
 //! A mesh as the formulas see it: at one scale, with a normal for every vertex.
 
+use super::pieces::of_pieces;
 use super::{sub, times};
 use crate::mesh::Mesh;
 
@@ -98,6 +99,12 @@ impl<'a> Surface<'a> {
         ]
     }
 
+    /// Whether one of a triangle's differences of texture coordinates has lost or gained 1.
+    #[inline(always)]
+    pub fn is_unwrapped(&self, triangle: usize) -> bool {
+        self.unwrap && Surface { unwrap: false, ..*self }.texture_edges(triangle) != self.texture_edges(triangle)
+    }
+
     /// A difference of texture coordinates across the shorter way round, if that is asked for.
     #[inline(always)]
     fn wrapped(&self, difference: f32) -> f32 {
@@ -112,8 +119,10 @@ impl<'a> Surface<'a> {
 
 /// The power of two that brings the greatest magnitude between 2^20 and 2^21.
 pub(super) fn scale<const N: usize>(vectors: &[[f32; N]]) -> f32 {
-    let greatest = vectors.as_flattened().iter().fold(0.0, |greatest: f32, value| greatest.max(value.abs()));
-    let exponent = (greatest.to_bits() >> 23) as i32 - 127;
+    // Magnitudes are in the order of their bits.
+    let greatest = |values: &[f32]| values.iter().fold(0, |greatest, value| value.abs().to_bits().max(greatest));
+    let greatest = of_pieces(vectors, |_, vectors| greatest(vectors.as_flattened())).into_iter().max().unwrap_or(0);
+    let exponent = (greatest >> 23) as i32 - 127;
     2f32.powi((20 - exponent).min(126))
 }
 

@@ -9,36 +9,48 @@ use crate::ops::tangents::{Fans, Frame, FrameSum, Surface, TangentMethod, Tangen
 #[repr(align(32))]
 pub(super) struct Given([f32; 8]);
 
+/// Where the frames of a block are computed.
+pub(super) struct Room {
+    triangles: Triangles,
+    planes: [Plane; 8],
+    given: [Given; BLOCK],
+}
+
+impl Default for Room {
+    fn default() -> Self {
+        Self { triangles: Triangles::default(), planes: [[0.0; BLOCK]; 8], given: [Given([0.0; 8]); BLOCK] }
+    }
+}
+
 /// The frames of a block of triangles.
-type OfBlock = fn(&Surface<'_>, usize, &mut [Given; BLOCK]);
+type OfBlock = fn(&Surface<'_>, usize, &mut Room);
 
 /// The tangent of each fan.
 pub(super) fn tangents(of_block: OfBlock, plan: &TangentPlan<'_>, tangents: &mut [[f32; 4]]) {
     let TangentPlan { surface, fans, .. } = *plan;
-    let given = of_blocks(surface.triangles.len(), |first| {
-        let mut given = [Given([0.0; 8]); BLOCK];
-        of_block(surface, first, &mut given);
-        given
+    let given = of_blocks(surface.triangles.len(), |room: &mut Room, first| {
+        of_block(surface, first, room);
+        room.given
     });
     fill_blocks(tangents, |first, tangents| tangents_of_sums(surface, fans, given.as_flattened(), first, tangents));
 }
 
 vectorised! {
-    pub(super) fn lengyel(surface: &Surface<'_>, first: usize, given: &mut [Given; BLOCK]) {
-        frames(TangentMethod::Lengyel, surface, first, given);
+    pub(super) fn lengyel(surface: &Surface<'_>, first: usize, room: &mut Room) {
+        frames(TangentMethod::Lengyel, surface, first, room);
     }
 }
 
 vectorised! {
-    pub(super) fn hegde(surface: &Surface<'_>, first: usize, given: &mut [Given; BLOCK]) {
-        frames(TangentMethod::Hegde, surface, first, given);
+    pub(super) fn hegde(surface: &Surface<'_>, first: usize, room: &mut Room) {
+        frames(TangentMethod::Hegde, surface, first, room);
     }
 }
 
 #[inline(always)]
-fn frames(method: TangentMethod, surface: &Surface<'_>, first: usize, given: &mut [Given; BLOCK]) {
-    let triangles = Triangles::gathered(surface, first);
-    let mut planes: [Plane; 7] = [[0.0; BLOCK]; 7];
+fn frames(method: TangentMethod, surface: &Surface<'_>, first: usize, room: &mut Room) {
+    let Room { triangles, planes, given } = room;
+    triangles.gather(surface, first);
     for i in 0..BLOCK {
         let frame = frame(method, &triangles.edges(surface, i));
         let Frame { t, b } = frame;
@@ -49,8 +61,9 @@ fn frames(method: TangentMethod, surface: &Surface<'_>, first: usize, given: &mu
         planes[6][i] = frame.magnitude();
     }
     for i in 0..BLOCK {
-        for (part, plane) in planes.iter().enumerate() {
-            given[i].0[part] = plane[i];
+        // All eight, or the stores are scattered one by one.
+        for part in 0..8 {
+            given[i].0[part] = planes[part][i];
         }
     }
 }
@@ -63,7 +76,7 @@ vectorised! {
         first: usize,
         tangents: &mut [[f32; 4]],
     ) {
-        let mut sums: [Plane; 7] = [[0.0; BLOCK]; 7];
+        let mut sums = [[0.0; 8]; BLOCK];
         let mut normals: [Plane; 3] = [[0.0; BLOCK]; 3];
         for i in 0..tangents.len().min(BLOCK) {
             let mut sum = [0.0; 8];
@@ -73,9 +86,7 @@ vectorised! {
                     sum[part] += given[part];
                 }
             }
-            for part in 0..7 {
-                sums[part][i] = sum[part];
-            }
+            sums[i] = sum;
             let normal = surface.normals[fans.vertex(first + i)];
             for axis in 0..3 {
                 normals[axis][i] = normal[axis];
@@ -83,11 +94,8 @@ vectorised! {
         }
         let mut planes: [Plane; 4] = [[0.0; BLOCK]; 4];
         for i in 0..BLOCK {
-            let sum = FrameSum {
-                t: [sums[0][i], sums[1][i], sums[2][i]],
-                b: [sums[3][i], sums[4][i], sums[5][i]],
-                magnitude: sums[6][i],
-            };
+            let [tx, ty, tz, bx, by, bz, magnitude, _] = sums[i];
+            let sum = FrameSum { t: [tx, ty, tz], b: [bx, by, bz], magnitude };
             let tangent = sum.tangent([normals[0][i], normals[1][i], normals[2][i]]);
             for part in 0..4 {
                 planes[part][i] = tangent[part];

@@ -2,7 +2,7 @@
 
 use super::triangles::Triangles;
 use super::{BLOCK, Plane, fill_blocks, of_blocks};
-use crate::exact::acos;
+use crate::exact::{acos, acos_estimate, is_in_doubt};
 use crate::ops::tangents::{
     Fans, Surface, TangentMethod, TangentPlan, add, frame, mikktspace_area, mikktspace_cosine, project, sign, times,
     unit,
@@ -11,25 +11,45 @@ use crate::ops::tangents::{
 /// What a corner adds to its fan's tangent, and in w its triangle's handedness.
 type Share = [f32; 4];
 
+/// Where the shares of a block are computed.
+struct Room {
+    triangles: Triangles,
+    normals: [[Plane; 3]; 3],
+    cosines: [Plane; 3],
+    directions: [[Plane; 3]; 3],
+    signs: Plane,
+    shares: [[Share; 3]; BLOCK],
+}
+
+impl Default for Room {
+    fn default() -> Self {
+        Self {
+            triangles: Triangles::default(),
+            normals: [[[0.0; BLOCK]; 3]; 3],
+            cosines: [[0.0; BLOCK]; 3],
+            directions: [[[0.0; BLOCK]; 3]; 3],
+            signs: [0.0; BLOCK],
+            shares: [[[0.0; 4]; 3]; BLOCK],
+        }
+    }
+}
+
 /// The tangent of each fan.
 pub(super) fn tangents(plan: &TangentPlan<'_>, tangents: &mut [[f32; 4]]) {
     let TangentPlan { surface, fans, .. } = *plan;
-    let shares = of_blocks(surface.triangles.len(), |first| {
-        let mut shares = [[[0.0; 4]; 3]; BLOCK];
-        shares_of_block(surface, fans, first, &mut shares);
-        shares
+    let shares = of_blocks(surface.triangles.len(), |room: &mut Room, first| {
+        shares_of_block(surface, fans, first, room);
+        room.shares
     });
     let shares = shares.as_flattened().as_flattened();
     fill_blocks(tangents, |first, tangents| tangents_of_sums(fans, shares, first, tangents));
 }
 
 vectorised! {
-    fn shares_of_block(surface: &Surface<'_>, fans: &Fans<'_>, first: usize, shares: &mut [[Share; 3]; BLOCK]) {
-        let triangles = Triangles::gathered(surface, first);
-        let normals = gathered_normals(surface, fans, first);
-        let mut cosines: [Plane; 3] = [[0.0; BLOCK]; 3];
-        let mut directions: [[Plane; 3]; 3] = [[[0.0; BLOCK]; 3]; 3];
-        let mut signs: Plane = [0.0; BLOCK];
+    fn shares_of_block(surface: &Surface<'_>, fans: &Fans<'_>, first: usize, room: &mut Room) {
+        let Room { triangles, normals, cosines, directions, signs, shares } = room;
+        triangles.gather(surface, first);
+        gather_normals(surface, fans, first, normals);
         for i in 0..BLOCK {
             let edges = triangles.edges(surface, i);
             signs[i] = sign(mikktspace_area([edges.d1, edges.d2]));
@@ -50,19 +70,37 @@ vectorised! {
             }
         }
         for corner in 0..3 {
+            let angles = angles(&cosines[corner]);
             let [x, y, z] = &directions[corner];
             for i in 0..BLOCK {
-                let share = times(acos(cosines[corner][i]), [x[i], y[i], z[i]]);
+                let share = times(angles[i], [x[i], y[i], z[i]]);
                 shares[i][corner] = [share[0], share[1], share[2], signs[i]];
             }
         }
     }
 }
 
+/// The angle of each cosine: estimated, and where that leaves doubt, computed in integers.
+#[inline(always)]
+fn angles(cosines: &Plane) -> Plane {
+    let mut angles = [0.0; BLOCK];
+    let mut doubts = 0;
+    for i in 0..BLOCK {
+        let estimate = acos_estimate(cosines[i]);
+        angles[i] = estimate as f32;
+        doubts += u32::from(is_in_doubt(estimate));
+    }
+    if doubts > 0 {
+        for i in 0..BLOCK {
+            angles[i] = acos(cosines[i]);
+        }
+    }
+    angles
+}
+
 /// The normal of each corner's fan, for the triangles from `first`.
 #[inline(always)]
-fn gathered_normals(surface: &Surface<'_>, fans: &Fans<'_>, first: usize) -> [[Plane; 3]; 3] {
-    let mut normals = [[[0.0; BLOCK]; 3]; 3];
+fn gather_normals(surface: &Surface<'_>, fans: &Fans<'_>, first: usize, normals: &mut [[Plane; 3]; 3]) {
     for (i, triangle) in surface.triangles[first..].iter().take(BLOCK).enumerate() {
         for corner in 0..3 {
             let vertex = match &fans.owners {
@@ -75,7 +113,6 @@ fn gathered_normals(surface: &Surface<'_>, fans: &Fans<'_>, first: usize) -> [[P
             }
         }
     }
-    normals
 }
 
 vectorised! {

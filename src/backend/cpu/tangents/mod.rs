@@ -37,14 +37,15 @@ pub(super) fn tangents(plan: &TangentPlan<'_>, tangents: &mut [[f32; 4]]) {
     }
 }
 
-/// What is made of each block of `count`: `make` is told the first of the block.
-fn of_blocks<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync) -> Vec<T> {
+/// What is made of each block of `count`: `make` is told the first of the block, and has room to work in.
+fn of_blocks<R: Default, T: Send>(count: usize, make: impl Fn(&mut R, usize) -> T + Sync) -> Vec<T> {
     let blocks = count.div_ceil(BLOCK);
-    let of_block = |block| make(block * BLOCK);
+    let of_block = |room: &mut R, block| make(room, block * BLOCK);
     if blocks <= FEW {
-        (0..blocks).map(of_block).collect()
+        let mut room = R::default();
+        (0..blocks).map(|block| of_block(&mut room, block)).collect()
     } else {
-        (0..blocks).into_par_iter().map(of_block).collect()
+        (0..blocks).into_par_iter().map_init(R::default, of_block).collect()
     }
 }
 

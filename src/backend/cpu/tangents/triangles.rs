@@ -3,30 +3,35 @@
 use super::{BLOCK, Plane};
 use crate::ops::tangents::{Surface, TriangleEdges};
 
-/// Positions and texture coordinates of a block of triangles, as the mesh has them; zeros beyond the last triangle.
+/// Positions and texture coordinates of a block of triangles, as the mesh has them; beyond the last triangle those of
+/// any other, or zeros.
 pub(super) struct Triangles {
     positions: [[Plane; 3]; 3],
     texcoords: [[Plane; 2]; 3],
 }
 
+impl Default for Triangles {
+    fn default() -> Self {
+        Self { positions: [[[0.0; BLOCK]; 3]; 3], texcoords: [[[0.0; BLOCK]; 2]; 3] }
+    }
+}
+
 impl Triangles {
-    /// The triangles from `first`.
+    /// Takes the triangles from `first`.
     #[inline(always)]
-    pub fn gathered(surface: &Surface<'_>, first: usize) -> Self {
-        let mut this = Self { positions: [[[0.0; BLOCK]; 3]; 3], texcoords: [[[0.0; BLOCK]; 2]; 3] };
+    pub fn gather(&mut self, surface: &Surface<'_>, first: usize) {
         for (i, triangle) in surface.triangles[first..].iter().take(BLOCK).enumerate() {
             for corner in 0..3 {
                 let position = surface.positions[triangle[corner] as usize];
                 for axis in 0..3 {
-                    this.positions[corner][axis][i] = position[axis];
+                    self.positions[corner][axis][i] = position[axis];
                 }
                 let texcoord = surface.texcoords[triangle[corner] as usize];
                 for axis in 0..2 {
-                    this.texcoords[corner][axis][i] = texcoord[axis];
+                    self.texcoords[corner][axis][i] = texcoord[axis];
                 }
             }
         }
-        this
     }
 
     /// The edges of a triangle, scaled.

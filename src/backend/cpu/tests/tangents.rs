@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::mesh::{CornerAdjacency, Mesh};
-use crate::ops::tangents::{Fans, MissingNormals, Shading, Surface, TangentMethod, TangentPlan};
+use crate::ops::tangents::{Faces, Fans, MissingNormals, Shading, Surface, TangentMethod, TangentPlan};
 
 /// What random meshes are made of.
 #[derive(Clone, Copy)]
@@ -73,7 +73,7 @@ fn check(mesh: &Mesh, unwrap: bool) {
     for method in [TangentMethod::Mikktspace, TangentMethod::Lengyel, TangentMethod::Hegde] {
         let fans = match method {
             TangentMethod::Mikktspace => Fans::of_mikktspace(&surface),
-            _ => Fans::by_handedness(&surface, &adjacency),
+            _ => Fans::by_handedness(&surface, &Faces::of(&surface), &adjacency),
         };
         for precision in [Precision::Exact, Precision::Fast] {
             let plan = TangentPlan { method, precision, surface: &surface, fans: &fans };
@@ -124,6 +124,6 @@ fn mirrored_halves_have_the_bytes_of_the_reference() {
     let mesh = Mesh::new(positions, texcoords, triangles).unwrap().with_normals(normals).unwrap();
     let adjacency = CornerAdjacency::of(&mesh);
     let surface = Surface::new(&mesh, mesh.normals().unwrap(), false);
-    assert_eq!(Fans::by_handedness(&surface, &adjacency).count(), (SIDE * SIDE + SIDE) as usize);
+    assert_eq!(Fans::by_handedness(&surface, &Faces::of(&surface), &adjacency).count(), (SIDE * SIDE + SIDE) as usize);
     check(&mesh, false);
 }
