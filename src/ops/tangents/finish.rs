@@ -97,8 +97,7 @@ pub(crate) fn finish(
             let [x, y, z, w] = *tangent;
             let is_directed = !is_zero([x, y, z]);
             let [x, y, z] = if is_directed { [x, y, z] } else { across(shading.normals[fans.vertex(fan)]) };
-            // Green up is against v.
-            *tangent = [x, y, z, if options.convention == Convention::Gl { -w } else { w }];
+            *tangent = [x, y, z, sign_of_green(options.convention, w)];
             is_directed
         };
         (first..).zip(tangents).map(of_fan).collect::<Vec<bool>>()
@@ -107,7 +106,7 @@ pub(crate) fn finish(
     let mut vertices = if fans.owners.is_none() && !shading.has_own_vertices {
         Vertices::unsplit(mesh, shading, of_fans, is_directed)
     } else {
-        Vertices::split(mesh, shading, fans, &of_fans, &is_directed)
+        Vertices::split(mesh, shading, fans, &of_fans, &is_directed, options.convention)
     };
     let welded = options.weld_seams.map_or(0, |angle| weld_seams(mesh, &mut vertices, angle));
     let report = TangentReport {
@@ -174,6 +173,7 @@ impl<'a> Vertices<'a> {
         fans: &Fans<'_>,
         of_fans: &[[f32; 4]],
         fan_is_directed: &[bool],
+        convention: Convention,
     ) -> Self {
         let indices = mesh.triangles().as_flattened();
         let shaded = shading.mesh.triangles().as_flattened();
@@ -185,7 +185,7 @@ impl<'a> Vertices<'a> {
                 if first == NONE {
                     let normal = if shading.has_own_vertices { [0.0, 0.0, 1.0] } else { shading.normals[vertex] };
                     let [x, y, z] = across(normal);
-                    return (normal, [x, y, z, 1.0], false);
+                    return (normal, [x, y, z, sign_of_green(convention, NO_SIGN)], false);
                 }
                 let fan = fan(first as usize);
                 (normal(first as usize), of_fans[fan], fan_is_directed[fan])
@@ -234,13 +234,26 @@ impl<'a> Vertices<'a> {
                     this.copies.push(*index);
                 }
                 at = next[at] as usize;
-                is_mirrored[vertex] |= this.tangents[vertex][3] != tangent[3];
+                // Where there is no direction, there is no handedness either.
+                let are_directed = this.is_directed[vertex] && fan_is_directed[fan(corner)];
+                is_mirrored[vertex] |= are_directed && this.tangents[vertex][3] != tangent[3];
             }
             *index = at as u32;
         }
         this.mirrored = is_mirrored.iter().filter(|&&is_mirrored| is_mirrored).count();
         this.triangles = Some(triangles);
         this
+    }
+}
+
+/// What w is, as to growing v, where nothing decides.
+const NO_SIGN: f32 = -1.0;
+
+/// The sign of the bitangent of a normal map, for the sign w of one along growing v: green up is against v.
+fn sign_of_green(convention: Convention, w: f32) -> f32 {
+    match convention {
+        Convention::Gl => -w,
+        Convention::Dx => w,
     }
 }
 

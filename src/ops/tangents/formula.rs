@@ -32,7 +32,7 @@ pub(crate) fn frame(method: TangentMethod, edges: &TriangleEdges) -> Frame {
     }
 }
 
-/// FGED2 eq. 7.37. The inverse determinant stays below 2^104: see [`texture_edges`].
+/// FGED2 eq. 7.37. The inverse determinant stays below 2^64: see [`texture_edges`].
 #[inline(always)]
 fn lengyel_frame(edges: &TriangleEdges) -> Frame {
     let TriangleEdges { e1, e2, .. } = *edges;
@@ -90,13 +90,14 @@ pub(crate) fn handedness(texture: [[f32; 2]; 2]) -> i8 {
     i8::from(determinant > 0.0) - i8::from(determinant < 0.0)
 }
 
-/// Differences of texture coordinates, of which those below 2^-40 count as zero: 2^-60 of the greatest coordinate.
+/// Differences of texture coordinates, of which those below 2^-20 count as zero: 2^-40 of the greatest coordinate.
 ///
-/// Their products are then multiples of 2^-126, so a determinant that is not zero is at least that, or at least 2^-24
-/// of the products; and no frame is longer than 2^90.
+/// Products that are not zero are then at least 2^-40. If both products of a determinant are, it is zero or at least
+/// 2^-24 of the greater, so an inverse determinant is below 2^64, and y over it below 2^44; if one is zero, below
+/// 2^40 and 2^62. With edges below 2^22 no component of a frame exceeds 2^85, nor a sum of 2^32 of them 2^117.
 #[inline(always)]
 fn texture_edges([[x1, y1], [x2, y2]]: [[f32; 2]; 2]) -> [[f32; 2]; 2] {
-    let snapped = |difference| zero_below(2f32.powi(-40), difference);
+    let snapped = |difference| zero_below(2f32.powi(-20), difference);
     [[snapped(x1), snapped(y1)], [snapped(x2), snapped(y2)]]
 }
 
@@ -175,8 +176,8 @@ pub(crate) fn unit(v: [f32; 3]) -> [f32; 3] {
 #[inline(always)]
 pub(crate) fn scaled_to_one(v: [f32; 3]) -> [f32; 3] {
     let greatest = (v[0].to_bits() & MAGNITUDE).max(v[1].to_bits() & MAGNITUDE).max(v[2].to_bits() & MAGNITUDE);
-    // 2^-e for a greatest component from 2^e to 2^(e + 1).
-    times(f32::from_bits((254 << 23) - (greatest & EXPONENT)), v)
+    // 2^-e for a greatest component from 2^e to 2^(e + 1); 2^-126, the least that is no subnormal, for 2^127.
+    times(f32::from_bits(((254 << 23) - (greatest & EXPONENT)).max(1 << 23)), v)
 }
 
 const MAGNITUDE: u32 = 0x7fff_ffff;

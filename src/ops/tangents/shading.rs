@@ -110,7 +110,8 @@ fn is_unit(n: [f32; 3]) -> bool {
     range.contains(&dot(n, n))
 }
 
-/// A unit vector; (0, 0, 1) for zero, which a vertex without area around it has.
+/// A unit vector; (0, 0, 1) for zero, which a vertex without area around it has. Minus zero is zero, so that triangles
+/// in one plane have one normal.
 fn unit_or_up(v: [f32; 3]) -> [f32; 3] {
-    if is_zero(v) { [0.0, 0.0, 1.0] } else { unit(v) }
+    if is_zero(v) { [0.0, 0.0, 1.0] } else { unit(v).map(|part| part + 0.0) }
 }
