@@ -30,6 +30,28 @@ pub(super) struct Edited<'a> {
     references: References,
 }
 
+/// What the vertices of a primitive have got.
+#[derive(Debug)]
+pub(super) struct Made {
+    pub tangents: Tangents,
+    pub bitangents: Option<Vec<[f32; 3]>>,
+}
+
+/// The attribute that bitangents are in. glTF has none for them; the underscore marks one of an application.
+const BITANGENT: &str = "_BITANGENT";
+
+impl Made {
+    /// Whether it has an attribute of this name.
+    fn has(&self, name: &str) -> bool {
+        match name {
+            "TANGENT" => true,
+            "NORMAL" => self.tangents.normals.is_some(),
+            BITANGENT => self.bitangents.is_some(),
+            _ => false,
+        }
+    }
+}
+
 /// An accessor to be, with its bytes.
 struct NewAccessor {
     fields: Map<String, Value>,
@@ -47,15 +69,16 @@ impl<'a> Edited<'a> {
     }
 
     /// Gives all primitives of one geometry its tangents.
-    pub fn apply(&mut self, geometry: &Geometry, places: &[Place], tangents: &Tangents) -> Result<()> {
+    pub fn apply(&mut self, geometry: &Geometry, places: &[Place], made: &Made) -> Result<()> {
+        let tangents = &made.tangents;
         let old: Vec<Value> = places.iter().map(|&place| primitive(&mut self.json, place).take()).collect();
         for primitive in &old {
-            replaced(primitive, tangents).for_each(|accessor| self.references.release(accessor, &self.document.json));
+            replaced(primitive, made).for_each(|accessor| self.references.release(accessor, &self.document.json));
         }
 
         // Those that take an old one's place go first.
         let mut copied = HashMap::new();
-        for accessor in old.iter().flat_map(|primitive| extended(primitive, tangents)) {
+        for accessor in old.iter().flat_map(|primitive| extended(primitive, made)) {
             if let Entry::Vacant(new) = copied.entry(accessor) {
                 let with_copies = self.with_copies(accessor, tangents)?;
                 new.insert(self.add(Some(accessor), with_copies));
@@ -68,9 +91,13 @@ impl<'a> Edited<'a> {
             let indices = index_accessor(triangles, tangents.tangents.len(), geometry.mode);
             self.add(geometry.indices, indices)
         });
-        let existing = old.iter().find_map(|primitive| index(&primitive["attributes"], "TANGENT"));
+        let existing = |name: &str| old.iter().find_map(|primitive| index(&primitive["attributes"], name));
+        let bitangents = made.bitangents.as_ref().map(|bitangents| {
+            let vectors = bytemuck::cast_slice(bitangents);
+            self.add(existing(BITANGENT), float_accessor("VEC3", bitangents.len(), vectors))
+        });
         let vectors = bytemuck::cast_slice(&tangents.tangents);
-        let tangent = self.add(existing, float_accessor("VEC4", tangents.tangents.len(), vectors));
+        let tangent = self.add(existing("TANGENT"), float_accessor("VEC4", tangents.tangents.len(), vectors));
 
         for (mut new, &place) in old.into_iter().zip(places) {
             let attributes = new["attributes"].as_object_mut().expect("a selected primitive has a position");
@@ -81,6 +108,9 @@ impl<'a> Edited<'a> {
                 attributes.insert("NORMAL".into(), normals.into());
             }
             attributes.insert("TANGENT".into(), tangent.into());
+            if let Some(bitangents) = bitangents {
+                attributes.insert(BITANGENT.into(), bitangents.into());
+            }
             for target in new["targets"].as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
                 target.shift_remove("TANGENT");
                 target.values_mut().for_each(|accessor| replace(accessor, &copied));
@@ -91,7 +121,7 @@ impl<'a> Edited<'a> {
                     new["mode"] = 4.into();
                 }
             }
-            replaced_by(&new, tangents).for_each(|accessor| self.references.hold(accessor));
+            replaced_by(&new, made).for_each(|accessor| self.references.hold(accessor));
             *primitive(&mut self.json, place) = new;
         }
         Ok(())
@@ -143,28 +173,27 @@ impl<'a> Edited<'a> {
     }
 }
 
-/// The accessors that a primitive's vertices, beyond tangents and new normals, are in, if they get copies.
-fn extended(primitive: &Value, tangents: &Tangents) -> impl Iterator<Item = usize> {
-    let has_copies = !tangents.copies.is_empty();
-    let attributes = primitive["attributes"].as_object().into_iter().flatten();
-    let attributes = attributes.filter(|(name, _)| tangents.normals.is_none() || *name != "NORMAL");
+/// The accessors that a primitive's vertices, beyond what is made for them, are in, if they get copies.
+fn extended(primitive: &Value, made: &Made) -> impl Iterator<Item = usize> {
+    let has_copies = !made.tangents.copies.is_empty();
+    let attributes = primitive["attributes"].as_object().into_iter().flatten().filter(|(name, _)| !made.has(name));
     let targets = primitive["targets"].as_array().into_iter().flatten().filter_map(Value::as_object).flatten();
-    let all = attributes.chain(targets).filter(move |(name, _)| has_copies && *name != "TANGENT");
+    let all = attributes.chain(targets.filter(|(name, _)| *name != "TANGENT")).filter(move |_| has_copies);
     all.filter_map(|(_, accessor)| accessor.as_u64()).map(|accessor| accessor as usize)
 }
 
 /// The accessors that a primitive's new ones take the place of.
-fn replaced(primitive: &Value, tangents: &Tangents) -> impl Iterator<Item = usize> {
+fn replaced(primitive: &Value, made: &Made) -> impl Iterator<Item = usize> {
     let targets = primitive["targets"].as_array().into_iter().flatten();
-    replaced_by(primitive, tangents).chain(targets.filter_map(|target| index(target, "TANGENT")))
+    replaced_by(primitive, made).chain(targets.filter_map(|target| index(target, "TANGENT")))
 }
 
 /// The accessors of a primitive with tangents that are new.
-fn replaced_by(primitive: &Value, tangents: &Tangents) -> impl Iterator<Item = usize> {
-    let attributes = &primitive["attributes"];
-    let normal = tangents.normals.as_ref().and_then(|_| index(attributes, "NORMAL"));
-    let indices = tangents.triangles.as_ref().and_then(|_| index(primitive, "indices"));
-    extended(primitive, tangents).chain(index(attributes, "TANGENT")).chain(normal).chain(indices)
+fn replaced_by(primitive: &Value, made: &Made) -> impl Iterator<Item = usize> {
+    let attributes = primitive["attributes"].as_object().into_iter().flatten().filter(|(name, _)| made.has(name));
+    let attributes = attributes.filter_map(|(_, accessor)| accessor.as_u64()).map(|accessor| accessor as usize);
+    let indices = made.tangents.triangles.as_ref().and_then(|_| index(primitive, "indices"));
+    extended(primitive, made).chain(attributes).chain(indices)
 }
 
 fn replace(accessor: &mut Value, copied: &HashMap<usize, usize>) {

@@ -1,7 +1,7 @@
 //! Models: what users read, give tangents and write.
 
 use super::document::{Document, index};
-use super::edit::Edited;
+use super::edit::{Edited, Made};
 use super::elements::Elements;
 use super::select::{Geometry, Place, Selection, name, named};
 use super::write::ModelFormat;
@@ -53,7 +53,7 @@ pub struct Model {
     primitives: Vec<Primitive>,
     left_out: Vec<LeftOut>,
     warnings: Vec<String>,
-    tangents: BTreeMap<usize, Tangents>,
+    made: BTreeMap<usize, Made>,
 }
 
 /// A primitive that needs tangents.
@@ -128,7 +128,7 @@ impl Model {
                 format!("{name}: the tangents of its morph targets are dropped, for they were made for other tangents")
             })
             .collect();
-        Ok(Self { document, geometries, primitives, left_out, warnings, tangents: BTreeMap::new() })
+        Ok(Self { document, geometries, primitives, left_out, warnings, made: BTreeMap::new() })
     }
 
     /// The primitives that need tangents, in the order of the file. Those that are the same are listed once.
@@ -177,7 +177,24 @@ impl Model {
         let vertices = Elements::count(&self.document, geometry.position)
             .map_err(|error| named(&self.document, places[0], error))?;
         check(&tangents, vertices)?;
-        self.tangents.insert(primitive, tangents);
+        self.made.insert(primitive, Made { tangents, bitangents: None });
+        Ok(())
+    }
+
+    /// Gives a primitive that has got tangents the bitangents of the same vertices ([`Tangents::bitangents`]), as the
+    /// attribute `_BITANGENT`. No reader needs them: the sign in a tangent's w and the normal rebuild them.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if the primitive has got no tangents, or more or fewer.
+    pub fn set_bitangents(&mut self, primitive: usize, bitangents: Vec<[f32; 3]>) -> Result<()> {
+        let made = self.made.get_mut(&primitive).ok_or_else(|| {
+            Error::parameter("primitive", primitive, "one that has got tangents, which come before bitangents")
+        })?;
+        let (count, wanted) = (bitangents.len(), made.tangents.tangents.len());
+        if count != wanted {
+            return Err(Error::parameter("number of bitangents", count, format!("{wanted}, one for each tangent")));
+        }
+        made.bitangents = Some(bitangents);
         Ok(())
     }
 
@@ -195,9 +212,9 @@ impl Model {
         let path = path.as_ref();
         ModelFormat::of(path)?;
         let mut edited = Edited::new(&self.document);
-        for (&primitive, tangents) in &self.tangents {
+        for (&primitive, made) in &self.made {
             let (geometry, places) = &self.geometries[primitive];
-            edited.apply(geometry, places, tangents).map_err(|error| named(&self.document, places[0], error))?;
+            edited.apply(geometry, places, made).map_err(|error| named(&self.document, places[0], error))?;
         }
         write::write(&self.document, edited, path)
     }

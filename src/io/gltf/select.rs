@@ -118,7 +118,7 @@ fn geometry(document: &Document, primitive: &Value, all: bool) -> Result<Result<
         _ => return Err(document.damaged("its mode is none of glTF's")),
     };
     let Some(texture) = normal_texture(document, primitive)?.or(all.then_some(&Value::Null)) else {
-        return Ok(Err("its material has no normal map".into()));
+        return Ok(Err("its material has no normal map (--all takes it too)".into()));
     };
     let transform = texture.pointer("/extensions/KHR_texture_transform");
     let set = transform.and_then(|transform| index(transform, "texCoord")).or(index(texture, "texCoord")).unwrap_or(0);

@@ -24,8 +24,7 @@ pub struct Tangents {
 }
 
 /// What was found in a mesh, counted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "cli", derive(serde::Serialize))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct TangentReport {
     /// Triangles of the mesh.
     pub triangles: usize,
