@@ -52,6 +52,8 @@ pub struct PrimitiveTangents {
     pub name: String,
     /// How many primitives of the file are the same, and share the result.
     pub shared_by: usize,
+    /// Whether it had normals of its own.
+    pub has_normals: bool,
     /// What was found in it.
     #[serde(flatten)]
     pub found: TangentReport,
@@ -105,6 +107,7 @@ impl TangentJob {
             return Outcome::unopened(refusal);
         }
         Outcome::of(&files, |warnings| {
+            Model::check_output(&self.output)?;
             let mut model = Model::read_with(&self.input, &self.read)?;
             let done = self.compute(&mut model, monitor)?;
             create_folder_of(&self.output)?;
@@ -127,7 +130,8 @@ impl TangentJob {
             // A device that failed once is worth telling, whatever ran the last primitive.
             done.ran = done.ran.filter(|ran| ran.fallback.is_some()).or(Some(ran));
             let (name, shared_by) = (primitive.name, primitive.shared_by);
-            done.primitives.push(PrimitiveTangents { name, shared_by, found: tangents.report });
+            let has_normals = mesh.normals().is_some();
+            done.primitives.push(PrimitiveTangents { name, shared_by, has_normals, found: tangents.report });
             let bitangents = self.bitangents.then(|| tangents.bitangents(&mesh));
             model.set_tangents(index, tangents)?;
             bitangents.map_or(Ok(()), |bitangents| model.set_bitangents(index, bitangents))?;
@@ -139,36 +143,37 @@ impl TangentJob {
 
 /// What a user should know about the meshes.
 fn warnings(done: &ModelTangents, missing_normals: MissingNormals) -> Vec<String> {
-    let count = |pick: fn(&TangentReport) -> usize| {
-        let concerned: Vec<_> = done.primitives.iter().filter(|primitive| pick(&primitive.found) > 0).collect();
-        let total: usize = concerned.iter().map(|primitive| pick(&primitive.found)).sum();
-        let names: Vec<&str> = concerned.iter().map(|primitive| primitive.name.as_str()).collect();
-        (total > 0).then(|| (total, listed(&names)))
+    let counted = |count: &dyn Fn(&PrimitiveTangents) -> usize| {
+        let concerned = || done.primitives.iter().filter(|primitive| count(primitive) > 0);
+        let total: usize = concerned().map(count).sum();
+        let names: Vec<&str> = concerned().map(|primitive| primitive.name.as_str()).collect();
+        (total > 0).then(|| format!("{total} ({})", listed(&names)))
     };
-    let undirected = count(|found| found.undirected).map(|(vertices, places)| {
+    let made = |has_normals: bool| {
+        counted(&|primitive| if primitive.has_normals == has_normals { primitive.found.normals_made } else { 0 })
+    };
+    let undirected = counted(&|primitive| primitive.found.undirected).map(|places| {
         format!(
-            "{vertices} vertices got any tangent at a right angle to their normal ({places}): their triangles have no \
-             area in the texture, or their tangents cancel; a normal map does not fit there"
+            "undirected vertices: {places}: their triangles have no area in the texture, or their tangents cancel; \
+             they got any tangent at a right angle to the normal, and a normal map does not fit there"
         )
     });
-    let made = count(|found| found.normals_made).map(|(vertices, places)| match missing_normals {
-        MissingNormals::Flat => format!(
-            "{vertices} vertices have no normals ({places}): each triangle got its own, as glTF prescribes; \
-             --normals smooth rounds the edges"
-        ),
-        MissingNormals::Smooth => format!("{vertices} vertices have no normals ({places}): they got smooth ones"),
-    });
-    let normalised = count(|found| found.normals_normalised).map(|(vertices, places)| {
-        format!("the normals of {vertices} vertices were not of unit length ({places}): they are now")
-    });
-    let nothing = done.primitives.is_empty().then(|| "no primitive got tangents".to_owned());
+    let remade = match missing_normals {
+        MissingNormals::Flat => "each triangle got its own, as glTF prescribes; --normals smooth rounds the edges",
+        MissingNormals::Smooth => "they got smooth ones",
+    };
+    let missing = made(false).map(|places| format!("vertices without a normal: {places}: {remade}"));
+    let zero = made(true).map(|places| format!("vertices whose normal is zero: {places}: they got smooth ones"));
+    let normalised = counted(&|primitive| primitive.found.normals_normalised)
+        .map(|places| format!("vertices whose normal is not of unit length: {places}: it was normalised"));
     let reasons: BTreeSet<&str> = done.left_out.iter().map(|left| left.reason.as_str()).collect();
     let left_out = reasons.into_iter().map(|reason| {
         let of_it = done.left_out.iter().filter(|left| left.reason == reason);
         let names: Vec<&str> = of_it.map(|left| left.name.as_str()).collect();
         format!("left out: {}: {reason}", listed(&names))
     });
-    undirected.into_iter().chain(made).chain(normalised).chain(left_out).chain(nothing).collect()
+    let nothing = done.primitives.is_empty().then(|| "no primitive got tangents".to_owned());
+    [undirected, missing, zero, normalised].into_iter().flatten().chain(left_out).chain(nothing).collect()
 }
 
 /// Names, of many only the first.

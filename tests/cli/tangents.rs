@@ -219,7 +219,7 @@ fn every_option_reaches_the_library() {
         assert_tangents(&model, 0, &mesh, &expected);
         let bitangents = model.numbers(&model.json["meshes"][0]["primitives"][0]["attributes"]["_BITANGENT"], "VEC3");
         assert_eq!(bits(&bitangents), bits(expected.bitangents(&mesh).as_flattened()));
-        run.says("warning: ", &["42 vertices have no normals", "mesh 0 \"sheet\", primitive 0"]);
+        run.says("warning: vertices without a normal: 42 (mesh 0 \"sheet\", primitive 0): ", &[]);
     }
     // Without the option there are none.
     folder.run(&["tangents", "model.glb", "-o", "out.glb"]).ends(0);
@@ -266,7 +266,8 @@ fn only_primitives_with_a_normal_map_are_taken() {
     assert_tangents(&model, 0, &first, &expected(&first));
     assert_eq!(model.json["meshes"][1]["primitives"][0]["attributes"]["TANGENT"], Value::Null);
     run.line("out.glb: 1 of 3 primitives, 20 vertices, 24 triangles");
-    run.says("warning: ", &["mesh 1 \"second\", primitive 0", "no normal map", "--all"]);
+    run.says("warning: left out: mesh 1 \"second\", primitive 0: ", &["no normal map", "--all"]);
+    run.says("warning: left out: mesh 0 \"first\", primitive 1: ", &["points"]);
 
     folder.run(&["tangents", "model.glb", "-o", "out.glb", "--all"]).ends(0).line("out.glb: 2 of 3 primitives, ");
     let model = Model::read(&folder, "out.glb");
@@ -316,9 +317,9 @@ fn what_is_wrong_with_a_mesh_is_said_and_counted() {
     let mesh = mesh.with_normals(vec![[0.0; 3], [0.0, 0.0, 2.0], [0.0, 0.0, 1.0]]).unwrap();
     folder.file("model.glb", Model::new().with("speck", &mesh, 0).glb());
     let run = folder.run(&["tangents", "model.glb", "-o", "out.glb", "--report", "r.json"]).ends(0);
-    run.says("warning: 3 vertices got any tangent", &["mesh 0 \"speck\", primitive 0", "no area in the texture"]);
-    run.says("warning: 1 vertices have no normals", &["speck"]);
-    run.says("warning: the normals of 1 vertices", &["not of unit length"]);
+    run.says("warning: undirected vertices: 3 (mesh 0 \"speck\", primitive 0): ", &["no area in the texture"]);
+    run.says("warning: vertices whose normal is zero: 1 (mesh 0 \"speck\", primitive 0): ", &["smooth"]);
+    run.says("warning: vertices whose normal is not of unit length: 1 (mesh 0 ", &["normalised"]);
     run.says("out.glb: 1 of 1 primitive, 3 vertices, 1 triangle, ", &["3 undirected, 2 with repaired normals"]);
     let report = folder.json("r.json");
     let total = &report["total"];
@@ -345,7 +346,7 @@ fn the_report_holds_every_count() {
     for time in ["milliseconds", "compute_milliseconds"] {
         assert!(take(time).as_f64().unwrap() > 0.0, "{time}");
     }
-    let (mut primitives, left_out) = (take("primitives"), take("left_out"));
+    let (primitives, left_out) = (take("primitives"), take("left_out"));
     assert_eq!(left_out.as_array().unwrap().len(), 1);
     assert_eq!(left_out[0]["name"], "mesh 1 \"plain\", primitive 0");
     assert!(left_out[0]["reason"].as_str().unwrap().contains("--all"), "{left_out}");
@@ -355,10 +356,10 @@ fn the_report_holds_every_count() {
         "normals_normalised": 0, "welded": found.welded,
     });
     assert_eq!(take("total"), counts);
-    assert_eq!(primitives[0].as_object_mut().unwrap().remove("shared_by"), Some(1.into()));
-    let name = primitives[0].as_object_mut().unwrap().remove("name");
-    assert_eq!(name.unwrap(), "mesh 0 \"sheet\", primitive 0");
-    assert_eq!(primitives, json!([counts]));
+    let mut primitive = counts;
+    primitive["name"] = "mesh 0 \"sheet\", primitive 0".into();
+    (primitive["shared_by"], primitive["has_normals"]) = (1.into(), true.into());
+    assert_eq!(primitives, json!([primitive]));
     let warnings = take("warnings");
     assert_eq!(warnings.as_array().unwrap().len(), 1, "{warnings}");
     let bytes = |name: &str| std::fs::metadata(folder.path(name)).unwrap().len();
@@ -404,7 +405,7 @@ fn refusals_name_the_file_and_the_way_out() {
         (&["text.glb", "-o", "o.glb"], &["text.glb: ", ".glb, .gltf and .obj"]),
         (&["model.glb", "-o", "model.glb"], &["model.glb", "would overwrite this input", "another output"]),
         (&["model.glb", "-o", "./folder/../model.glb"], &["would overwrite this input", "another output"]),
-        (&["model.glb", "-o", "o.obj"], &["o.obj: ", ".glb or .gltf"]),
+        (&["model.glb", "-o", "o.obj"], &["o.obj: ", ".glb or .gltf", "folder in /"]),
         (&["nan.glb", "-o", "o.glb"], &["nan.glb: mesh 0 \"sheet\", primitive 0: the position of vertex 0 is [NaN"]),
         (&["index.glb", "-o", "o.glb"], &["index.glb: mesh 0 \"sheet\", primitive 0: ", "9", "below 9"]),
         (&["draco.glb", "-o", "o.glb"], &["draco.glb: ", "KHR_draco_mesh_compression", "without compression"]),
@@ -459,4 +460,22 @@ fn what_help_shows_works() {
         folder.run(&arguments).ends(0);
     }
     assert!(folder.path("out/model.gltf").exists());
+}
+
+#[test]
+fn primitives_that_are_the_same_are_computed_once() {
+    let folder = Folder::new();
+    let mesh = sheet(4, 3);
+    let mut model = Model::new().with("first", &mesh, 0);
+    let same = model.json["meshes"][0]["primitives"][0].clone();
+    model.push("meshes", json!({ "name": "second", "primitives": [same] }));
+    folder.file("model.glb", model.glb());
+    let run = folder.run(&["tangents", "model.glb", "-o", "out.glb", "--report", "r.json"]).ends(0);
+    // 20 vertices, not 40.
+    run.line("out.glb: 2 of 2 primitives, 20 vertices, 24 triangles, ");
+    assert_eq!(folder.json("r.json")["primitives"][0]["shared_by"], 2);
+    let expected = Baker::reference().tangents(&mesh, &TangentOptions::default()).unwrap();
+    let model = Model::read(&folder, "out.glb");
+    assert_tangents(&model, 0, &mesh, &expected);
+    assert_tangents(&model, 1, &mesh, &expected);
 }

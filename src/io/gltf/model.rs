@@ -198,6 +198,14 @@ impl Model {
         Ok(())
     }
 
+    /// Fails if a model cannot be called `path`; nothing is looked up or created.
+    ///
+    /// # Errors
+    /// [`Error::File`] for another extension than .glb and .gltf.
+    pub fn check_output(path: &Path) -> Result<()> {
+        ModelFormat::of(path).map(drop)
+    }
+
     /// Writes the model as .glb or .gltf, by the extension.
     ///
     /// A .gltf made of a .glb or an OBJ has its buffer beside it (`name.bin`); one made of a .gltf has the new data in

@@ -38,7 +38,11 @@ impl ModelFormat {
         match path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase).as_deref() {
             Some("glb") => Ok(Self::Glb),
             Some("gltf") => Ok(Self::Gltf),
-            _ => Err(Error::file(path, "models are written as glTF", "give it the extension .glb or .gltf")),
+            _ => Err(Error::file(
+                path,
+                "models are written as glTF",
+                "give it the extension .glb or .gltf, or end the name of a folder in /",
+            )),
         }
     }
 }
