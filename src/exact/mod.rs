@@ -9,6 +9,8 @@ mod scale;
 mod weights;
 
 pub(crate) use acos::acos;
+#[allow(unused_imports, reason = "for lanes")]
+pub(crate) use acos::{acos_estimate, is_in_doubt};
 use float::Wide;
 pub(crate) use float::{nearest_f16, nearest_f32};
 pub use rational::Rational;

@@ -8,6 +8,8 @@
 //! texels -> normals -> components -> codes -> texels    blend, and parallax with the normals of a map
 //! ```
 //!
+//! Meshes have passes of their own: see [`tangents`].
+//!
 //! Components of integer maps are estimates whose error is bounded. Where that bound leaves a code in doubt, integers
 //! decide.
 
@@ -25,6 +27,7 @@ mod reference;
 mod round;
 mod slopes;
 mod sums;
+mod tangents;
 #[cfg(test)]
 mod tests;
 
@@ -36,7 +39,7 @@ use crate::map::{CodesMut, CodesRef};
 use crate::ops::bake::BakePlan;
 use crate::ops::blend::BlendPlan;
 use crate::ops::parallax::ParallaxPlan;
-use crate::ops::tangents::{self, TangentPlan};
+use crate::ops::tangents::TangentPlan;
 use crate::stream::{CodeSink, HeightBands, LayerBand, LayerBands};
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -181,7 +184,10 @@ impl Backend for Cpu {
     }
 
     fn tangents(&self, plan: &TangentPlan<'_>, out: &mut [[f32; 4]]) -> Result<()> {
-        tangents::tangents_of_fans(plan, out);
+        match &self.own_threads {
+            Some(threads) if tangents::is_large(plan) => threads.install(|| tangents::tangents(plan, out)),
+            _ => tangents::tangents(plan, out),
+        }
         Ok(())
     }
 }

@@ -14,6 +14,14 @@ pub(crate) struct Frame {
     pub b: [f32; 3],
 }
 
+impl Frame {
+    /// The sum of the magnitudes of t's components.
+    #[inline(always)]
+    pub fn magnitude(&self) -> f32 {
+        (self.t[0].abs() + self.t[1].abs()) + self.t[2].abs()
+    }
+}
+
 /// The frame of a triangle. It is zero where the triangle has no direction.
 #[inline(always)]
 pub(crate) fn frame(method: TangentMethod, edges: &TriangleEdges) -> Frame {
@@ -104,9 +112,9 @@ pub(crate) struct FrameSum {
 impl FrameSum {
     /// With one more triangle.
     #[inline(always)]
-    pub fn plus(self, Frame { t, b }: Frame) -> Self {
-        let magnitude = self.magnitude + ((t[0].abs() + t[1].abs()) + t[2].abs());
-        Self { t: add(self.t, t), b: add(self.b, b), magnitude }
+    pub fn plus(self, frame: Frame) -> Self {
+        let magnitude = self.magnitude + frame.magnitude();
+        Self { t: add(self.t, frame.t), b: add(self.b, frame.b), magnitude }
     }
 
     /// The tangent of a vertex with normal n, and the handedness (FGED2 eq. 7.38 and 7.40, listing 7.4); zero where
@@ -132,11 +140,16 @@ impl FrameSum {
 /// What a triangle adds at its corner at `p` to MikkTSpace's tangent of a vertex with normal n: its s in the tangent
 /// plane, weighted by the angle between the edges to the corners at `next` and `previous`.
 #[inline(always)]
-pub(crate) fn mikktspace_share(n: [f32; 3], s: [f32; 3], [p, next, previous]: [[f32; 3]; 3]) -> [f32; 3] {
+pub(crate) fn mikktspace_share(n: [f32; 3], s: [f32; 3], corner: [[f32; 3]; 3]) -> [f32; 3] {
+    times(acos(mikktspace_cosine(n, corner)), unit(project(n, s)))
+}
+
+/// The cosine of the angle in the tangent plane.
+#[inline(always)]
+pub(crate) fn mikktspace_cosine(n: [f32; 3], [p, next, previous]: [[f32; 3]; 3]) -> f32 {
     let a = unit(project(n, sub(next, p)));
     let b = unit(project(n, sub(previous, p)));
-    let angle = acos(dot(a, b).clamp(-1.0, 1.0));
-    times(angle, unit(project(n, s)))
+    dot(a, b).clamp(-1.0, 1.0)
 }
 
 /// v without its part along n.
@@ -151,14 +164,19 @@ pub(crate) fn project(n: [f32; 3], v: [f32; 3]) -> [f32; 3] {
 /// would, the bits are those of v times the inverse of its length.
 #[inline(always)]
 pub(crate) fn unit(v: [f32; 3]) -> [f32; 3] {
-    let greatest = (v[0].to_bits() & MAGNITUDE).max(v[1].to_bits() & MAGNITUDE).max(v[2].to_bits() & MAGNITUDE);
-    if greatest == 0 {
+    let v = scaled_to_one(v);
+    if is_zero(v) {
         return [0.0; 3];
     }
-    // 2^-e for a greatest component from 2^e to 2^(e + 1).
-    let factor = f32::from_bits((254 << 23) - (greatest & EXPONENT));
-    let v = times(factor, v);
     times(1.0 / dot(v, v).sqrt(), v)
+}
+
+/// v times a power of two that brings its greatest component from 1 to 2, or nearer to it if that is subnormal.
+#[inline(always)]
+pub(crate) fn scaled_to_one(v: [f32; 3]) -> [f32; 3] {
+    let greatest = (v[0].to_bits() & MAGNITUDE).max(v[1].to_bits() & MAGNITUDE).max(v[2].to_bits() & MAGNITUDE);
+    // 2^-e for a greatest component from 2^e to 2^(e + 1).
+    times(f32::from_bits((254 << 23) - (greatest & EXPONENT)), v)
 }
 
 const MAGNITUDE: u32 = 0x7fff_ffff;

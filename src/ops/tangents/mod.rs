@@ -7,15 +7,19 @@
 //! A fan is the set of corners that share a tangent. Which corners those are is decided once, on the CPU; what a
 //! backend computes is the arithmetic between the brackets.
 
+mod faces;
 mod fans;
 mod finish;
 mod formula;
+mod mikktspace;
 mod options;
+mod pieces;
 mod reference;
 mod seams;
 mod shading;
 mod surface;
 
+pub(crate) use faces::Faces;
 pub(crate) use fans::Fans;
 pub(crate) use finish::finish;
 pub use finish::{TangentReport, Tangents};
@@ -31,6 +35,7 @@ use super::Precision;
 #[derive(Debug)]
 pub(crate) struct TangentPlan<'a> {
     pub method: TangentMethod,
+    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "the CPU is fast and exact"))]
     pub precision: Precision,
     pub surface: &'a Surface<'a>,
     pub fans: &'a Fans<'a>,

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 /// Averages the tangents of vertices that have position, normal and handedness in common and lie at most `degrees`
 /// from the first of them that has not been averaged. Tells how many vertices have another tangent now.
-pub(super) fn weld_seams(mesh: &Mesh, vertices: &mut Vertices, degrees: f32) -> usize {
+pub(super) fn weld_seams(mesh: &Mesh, vertices: &mut Vertices<'_>, degrees: f32) -> usize {
     let own = mesh.positions().len();
     // Minus zero is zero.
     let bits = |v: [f32; 3]| v.map(|part| (part + 0.0).to_bits());

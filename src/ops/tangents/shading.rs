@@ -1,5 +1,6 @@
 //! A normal for every vertex, where a mesh has none or none of use.
 
+use super::pieces::of_pieces;
 use super::surface::scale;
 use super::{MissingNormals, add, cross, dot, is_zero, sub, times, unit};
 use crate::mesh::{CornerAdjacency, Mesh};
@@ -36,7 +37,7 @@ impl<'a> Shading<'a> {
             normalised,
         };
         match (mesh.normals(), missing) {
-            (Some(normals), _) if normals.iter().all(|&n| is_unit(n)) => given(normals.into(), 0, 0),
+            (Some(normals), _) if are_unit(normals) => given(normals.into(), 0, 0),
             (Some(normals), _) => {
                 let (repaired, made, normalised) = repaired(mesh, normals);
                 given(repaired.into(), made, normalised)
@@ -95,6 +96,12 @@ fn smooth_normals(mesh: &Mesh) -> Vec<[f32; 3]> {
 fn area_normal(mesh: &Mesh, scale: f32, triangle: usize) -> [f32; 3] {
     let [a, b, c] = mesh.triangles()[triangle].map(|vertex| times(scale, mesh.positions()[vertex as usize]));
     cross(sub(b, a), sub(c, a))
+}
+
+fn are_unit(normals: &[[f32; 3]]) -> bool {
+    // Counting is faster than stopping at the first.
+    let others = |_, normals: &[[f32; 3]]| normals.iter().fold(0, |others, &n| others + u32::from(!is_unit(n)));
+    of_pieces(normals, others).into_iter().all(|others| others == 0)
 }
 
 fn is_unit(n: [f32; 3]) -> bool {
