@@ -81,7 +81,8 @@ fn tilted([x, y, z]: [f32; 3]) -> [f32; 3] {
     [x, cos * y - sin * z, sin * y + cos * z]
 }
 
-/// RGB rows of a square in which `colour` gives each sample its colour from normal, tangent, sign and texture coordinate.
+/// RGB rows of a square in which `colour` gives each sample its colour: from normal, tangent, sign and texture
+/// coordinate.
 fn rasterised(
     vertices: &[Attributes],
     triangles: &[[u32; 3]],

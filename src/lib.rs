@@ -76,7 +76,7 @@
 //!
 //! | method | what a triangle adds at a corner |
 //! | --- | --- |
-//! | [`TangentMethod::Mikktspace`] | t projected on the corner's tangent plane, of length one, times the angle at the corner |
+//! | [`TangentMethod::Mikktspace`] | t projected on the tangent plane, of length one, times the angle at the corner |
 //! | [`TangentMethod::Lengyel`] | t (listing 7.4) |
 //! | [`TangentMethod::Hegde`] | its first edge along which u changes, of length one, towards growing u |
 //!
@@ -130,12 +130,12 @@
 //! | an index that is no vertex's | [`Error::Parameter`] names the triangle |
 //! | coordinates of 1e20, of 1e-20 | the bits of unit scale: only ratios matter |
 //! | a triangle without area in the texture | adds nothing to its vertices |
-//! | a triangle without area in space | `Hegde`: adds nothing; `Lengyel`: what its edges say; `Mikktspace`: the reference's group of the same corner |
-//! | a vertex of which all triangles are such, or whose tangents cancel (a pole) | any tangent at a right angle to n: the axis furthest from n, projected |
+//! | a triangle without area in space | adds what its edges say; `Hegde`: nothing; `Mikktspace`: as the reference |
+//! | a vertex with such triangles only, or whose tangents cancel (a pole) | the axis furthest from n, projected |
 //! | a vertex without triangles | the same |
 //! | a vertex between mirrored halves | split: one for each handedness |
 //! | a mapping that is upside down (v inverted) | w is negated; n is the mesh's own, so nothing else changes |
-//! | u that jumps from 1 to 0 across shared vertices (a cylinder) | taken at its word: one column of triangles runs back. With [`TangentOptions::unwrap`] the shorter way round |
+//! | u that jumps from 1 to 0 across shared vertices (a cylinder) | taken at its word, or [`TangentOptions::unwrap`] |
 //! | no normals | [`MissingNormals`]: each triangle's own, which splits its vertices, or smooth ones |
 //! | a zero among the normals | the smooth normal of the triangles at that position; (0, 0, 1) if they have no area |
 //! | a normal whose length is off by more than 1 % | normalised |
