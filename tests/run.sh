@@ -52,6 +52,10 @@ packages=(
     libegl1 libgles2 libgl1-mesa-dri
     chromium-common # SwiftShader's Vulkan driver, without the browser
 )
+# The Khronos validator of glTF. Some systems have npm in the package of node.
+if ! command -v node > /dev/null || ! command -v npm > /dev/null; then
+    packages+=(nodejs npm)
+fi
 
 install_packages() {
     local package absent=() sudo=()
@@ -132,6 +136,66 @@ fetch_materials() {
     echo "$TEXBAKE_MATERIALS"
 }
 
+# npm_package NAME SHA256 FOLDER: unpacks a package of npm, name@version, into a folder; fetched once.
+npm_package() {
+    local name=$1 sha256=$2 folder=$3 archive
+    [ ! -e "$folder/complete" ] || return 0
+    mkdir -p "$folder"
+    archive=$folder/$(npm pack --silent --pack-destination "$folder" "$name" | tail -n 1) \
+        && echo "$sha256  $archive" | sha256sum --check --quiet \
+        && tar -xzf "$archive" -C "$folder" \
+        && touch "$folder/complete"
+    rm -f "$folder"/*.tgz
+    [ -e "$folder/complete" ]
+}
+
+# The Khronos validator of glTF, from npm: kept with the build, never in git. Without node or a network its tests print
+# that they were not run; TEXBAKE_REQUIRE_GLTF_VALIDATOR=1 makes that a failure.
+fetch_validator() {
+    local name=gltf-validator@2.0.0-dev.3.10 folder
+    local sha256=4e03dbdc3bc0d1342afd5d2d7ae341a7e3474502ccb872b02dbbaddaee0fdec6
+    folder=${CARGO_TARGET_DIR:-$PWD/target}/gltf-validator
+    if ! command -v node > /dev/null || ! npm_package "$name" "$sha256" "$folder"; then
+        echo "node or $name is out of reach: the validator's tests are not run"
+        [ "${TEXBAKE_REQUIRE_GLTF_VALIDATOR:-0}" != 1 ]
+        return
+    fi
+    export TEXBAKE_GLTF_VALIDATOR=$folder/package
+    echo "$TEXBAKE_GLTF_VALIDATOR"
+}
+
+# Real models, most of them with normal maps: the controllers of @webxr-input-profiles/assets (npm, MIT licence). Only
+# left hands, the right ones being their mirror images. TEXBAKE_REQUIRE_MODELS=1 makes their absence a failure.
+fetch_models() {
+    local name=@webxr-input-profiles/assets@1.0.20 folder profile hand file
+    local sha256=30df2a2268220fc0d0e034bed1550aabdd7a2500573c5216f64fc70d59c3d91e
+    folder=${CARGO_TARGET_DIR:-$PWD/target}/models
+    if [ ! -e "$folder/complete" ]; then
+        mkdir -p "$folder"
+        if npm_package "$name" "$sha256" "$folder/package"; then
+            for profile in "$folder"/package/package/dist/profiles/*/; do
+                case $(basename "$profile") in
+                    generic-* | hp-* | magicleap-* | microsoft-* | samsung-* | pico-4u | oculus-touch) ;;
+                    *) continue ;;
+                esac
+                for hand in left none; do
+                    file=$profile$hand.glb
+                    [ ! -e "$file" ] || mv "$file" "$folder/$(basename "$profile")-$hand.glb"
+                done
+            done
+            touch "$folder/complete"
+        fi
+        rm -rf "$folder/package"
+    fi
+    if [ ! -e "$folder/complete" ]; then
+        echo "$name is out of reach: the tests of real models are not run"
+        [ "${TEXBAKE_REQUIRE_MODELS:-0}" != 1 ]
+        return
+    fi
+    export TEXBAKE_MODELS=$folder
+    echo "$TEXBAKE_MODELS"
+}
+
 # Without cargo-deny (its build takes minutes, so it is not installed here): every dependency offers one of the licences that deny.toml allows.
 check_licences() {
     local allowed others
@@ -167,6 +231,8 @@ fi
 check "packages" install_packages
 check "software devices" choose_software_devices
 check "materials" fetch_materials
+check "glTF validator" fetch_validator
+check "models" fetch_models
 check "formatting" cargo fmt --check
 check "lints" cargo clippy --release --all-targets -- -D warnings
 check "lints without the gpu feature" cargo clippy --release --no-default-features --features cli -- -D warnings

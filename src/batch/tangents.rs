@@ -132,7 +132,7 @@ impl TangentJob {
             let (name, shared_by) = (primitive.name, primitive.shared_by);
             let has_normals = mesh.normals().is_some();
             done.primitives.push(PrimitiveTangents { name, shared_by, has_normals, found: tangents.report });
-            let bitangents = self.bitangents.then(|| tangents.bitangents(&mesh));
+            let bitangents = self.bitangents.then(|| tangents.bitangents(&mesh)).transpose()?;
             model.set_tangents(index, tangents)?;
             bitangents.map_or(Ok(()), |bitangents| model.set_bitangents(index, bitangents))?;
         }

@@ -127,12 +127,12 @@ fn variant(whole: &[u8], noise: &mut Noise) -> Vec<u8> {
 }
 
 /// Variants per file; more are tried with TEXBAKE_DAMAGE=n.
-fn variants() -> u32 {
+pub fn variants() -> u32 {
     std::env::var("TEXBAKE_DAMAGE").ok().and_then(|count| count.parse().ok()).unwrap_or(1000)
 }
 
 /// Small enough that a file that claims more is refused, not tried.
-const MAX_BYTES: u64 = 64 << 20;
+pub const MAX_BYTES: u64 = 64 << 20;
 
 #[test]
 fn damaged_height_maps_never_panic() {
@@ -151,10 +151,10 @@ fn damaged_normal_maps_never_panic() {
 }
 
 /// Reads variants of each file.
-fn assert_no_panic(samples: &[PathBuf], read_map: impl Fn(&Path) -> Result<(), Error> + RefUnwindSafe) {
+pub fn assert_no_panic(samples: &[PathBuf], read_file: impl Fn(&Path) -> Result<(), Error> + RefUnwindSafe) {
     for path in samples {
         let whole = std::fs::read(path).unwrap();
-        read_map(path).expect("undamaged, the file reads");
+        read_file(path).expect("undamaged, the file reads");
         let mut noise = Noise(whole.len() as u64);
         let (mut read, mut refused) = (0, 0);
         for _ in 0..variants() {
@@ -162,7 +162,7 @@ fn assert_no_panic(samples: &[PathBuf], read_map: impl Fn(&Path) -> Result<(), E
             // A file that is cut and written again goes to the disk at once; a new one does not.
             std::fs::remove_file(path).unwrap();
             std::fs::write(path, &bytes).unwrap();
-            let result = std::panic::catch_unwind(|| read_map(path));
+            let result = std::panic::catch_unwind(|| read_file(path));
             match result {
                 Ok(Ok(())) => read += 1,
                 Ok(Err(error)) => {

@@ -1,9 +1,11 @@
-//! Reading height maps and normal maps, writing normal maps and parallax maps.
+//! Reading height maps and normal maps, writing normal maps and parallax maps; models in and out.
 
 mod damage;
 mod exr;
+mod gltf;
 mod hand_made_tiff;
 mod normal;
+mod obj;
 mod parallax;
 mod png;
 mod raster;

@@ -64,9 +64,7 @@ impl Document {
 
     /// The same, with all fields as glTF 2.0 defines them.
     pub fn typed<T: DeserializeOwned>(&self, kind: &str, index: usize) -> Result<T> {
-        // Extensions are looked at where they matter, and may hold anything.
-        let mut object = self.object(kind, index)?.clone();
-        object.as_object_mut().map(|fields| fields.shift_remove("extensions"));
+        let object = defined(self.object(kind, index)?);
         serde_json::from_value(object).map_err(|error| self.damaged(format!("{kind}[{index}]: {error}")))
     }
 
@@ -88,6 +86,13 @@ impl Document {
     pub fn required_extensions(&self) -> impl Iterator<Item = &str> {
         self.list("extensionsRequired").iter().filter_map(Value::as_str)
     }
+}
+
+/// An object without extensions, which are looked at where they matter, and extras: they may hold anything.
+fn defined(value: &Value) -> Value {
+    let Value::Object(fields) = value else { return value.clone() };
+    let fields = fields.iter().filter(|(name, _)| *name != "extensions" && *name != "extras");
+    fields.map(|(name, field)| (name.clone(), defined(field))).collect()
 }
 
 /// `length` from `offset`, if that can be in memory.

@@ -111,7 +111,13 @@ impl<'a> Edited<'a> {
             if let Some(bitangents) = bitangents {
                 attributes.insert(BITANGENT.into(), bitangents.into());
             }
-            for target in new["targets"].as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
+            for target in new
+                .get_mut("targets")
+                .and_then(Value::as_array_mut)
+                .into_iter()
+                .flatten()
+                .filter_map(Value::as_object_mut)
+            {
                 target.shift_remove("TANGENT");
                 target.values_mut().for_each(|accessor| replace(accessor, &copied));
             }
@@ -216,8 +222,8 @@ fn put(json: &mut Value, kind: &str, at: usize, mut object: Value) {
         list.push(object);
         return;
     }
-    if let name @ Value::String(_) = list[at]["name"].take() {
-        object["name"] = name;
+    if let Some(name) = list[at].get("name") {
+        object["name"] = name.clone();
     }
     list[at] = object;
 }

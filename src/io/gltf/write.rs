@@ -133,7 +133,7 @@ fn move_views(json: &mut Value, places: &[(usize, usize)]) {
         move_view(view, places);
         // Compressed data has a place of its own.
         for name in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
-            if let Some(extension) = view["extensions"].get_mut(name) {
+            if let Some(extension) = view.get_mut("extensions").and_then(|extensions| extensions.get_mut(name)) {
                 move_view(extension, places);
             }
         }

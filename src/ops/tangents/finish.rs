@@ -3,6 +3,7 @@
 use super::pieces::{of_pieces, of_pieces_mut};
 use super::seams::weld_seams;
 use super::{Faces, Fans, Shading, TangentOptions, cross, is_zero, project, times, unit};
+use crate::error::{Error, Result};
 use crate::map::Convention;
 use crate::mesh::Mesh;
 use std::borrow::Cow;
@@ -64,15 +65,23 @@ impl Tangents {
 
     /// The bitangent of each vertex, w (n x t) (FGED2 eq. 7.40).
     ///
-    /// `mesh` is the one that the tangents are of.
-    pub fn bitangents(&self, mesh: &Mesh) -> Vec<[f32; 3]> {
-        let normal = |(vertex, source): (usize, u32)| match (&self.normals, mesh.normals()) {
-            (Some(normals), _) => normals[vertex],
-            (None, Some(normals)) => normals[source as usize],
-            (None, None) => unreachable!("the normals of a mesh without any were made"),
+    /// # Errors
+    /// [`Error::Parameter`] if `mesh` is not the one that the tangents are of: it has more or fewer vertices, or no
+    /// normals although its normals were used.
+    pub fn bitangents(&self, mesh: &Mesh) -> Result<Vec<[f32; 3]>> {
+        let own = self.tangents.len() - self.copies.len();
+        let normals: Vec<[f32; 3]> = match (&self.normals, mesh.normals()) {
+            (Some(normals), _) if mesh.positions().len() == own => normals.clone(),
+            (None, Some(normals)) if normals.len() == own => {
+                self.sources().map(|source| normals[source as usize]).collect()
+            }
+            _ => {
+                let value = format!("one of {} vertices", mesh.positions().len());
+                return Err(Error::parameter("mesh", value, format!("the one of {own} that the tangents are of")));
+            }
         };
-        let normals = self.sources().enumerate().map(normal);
-        normals.zip(&self.tangents).map(|(n, &[x, y, z, w])| times(w, cross(n, [x, y, z]))).collect()
+        let bitangent = |(n, &[x, y, z, w]): (_, &[f32; 4])| times(w, cross(n, [x, y, z]));
+        Ok(normals.into_iter().zip(&self.tangents).map(bitangent).collect())
     }
 
     /// Three components: the sign is the lowest bit of x, 1 for minus (FGED2 section 7.5). It moves x by at most one

@@ -15,8 +15,8 @@ pub struct TangentOptions {
     pub convention: Convention,
     /// Normals for a mesh that has none.
     pub missing_normals: MissingNormals,
-    /// Whether texture coordinates that are further apart than half the texture, along a triangle's edge, are taken
-    /// to have jumped from 1 to 0 there (Hegde's cylinder).
+    /// Whether texture coordinates of a triangle that are further apart than half the texture are taken to have jumped
+    /// from 1 to 0 in between (Hegde's cylinder).
     pub unwrap: bool,
     /// Degrees, 0 to 90: tangents of vertices at one position and with one normal become equal if they have the same
     /// handedness and are no further apart (FGED2 section 7.5).

@@ -16,7 +16,8 @@ pub(crate) struct Surface<'a> {
     pub normals: &'a [[f32; 3]],
     pub texcoords: &'a [[f32; 2]],
     pub texcoord_scale: f32,
-    /// Whether differences of texture coordinates are brought between -1/2 and 1/2 by adding or subtracting 1.
+    /// Whether a corner whose u or v is more than half a texture behind the greatest of its triangle counts as one
+    /// texture further: Hegde's temporary duplicates with u + 1.
     pub unwrap: bool,
     pub triangles: &'a [[u32; 3]],
 }
@@ -91,23 +92,23 @@ impl<'a> Surface<'a> {
 
     #[inline(always)]
     fn texture_edges_between(&self, [a, b, c]: [[f32; 2]; 3]) -> [[f32; 2]; 2] {
-        let scale = self.texcoord_scale;
-        let [u, v] = [a[0] * scale, a[1] * scale];
-        [
-            [self.wrapped(b[0] * scale - u), self.wrapped(b[1] * scale - v)],
-            [self.wrapped(c[0] * scale - u), self.wrapped(c[1] * scale - v)],
-        ]
+        let [x1, x2] = self.differences([a[0], b[0], c[0]]);
+        let [y1, y2] = self.differences([a[1], b[1], c[1]]);
+        [[x1, y1], [x2, y2]]
     }
 
-    /// A difference of texture coordinates across the shorter way round, if that is asked for.
+    /// One texture coordinate of three corners, scaled, less that of the first.
     #[inline(always)]
-    fn wrapped(&self, difference: f32) -> f32 {
-        let half = 0.5 * self.texcoord_scale;
-        match difference {
-            d if self.unwrap && d > half => d - self.texcoord_scale,
-            d if self.unwrap && d < -half => d + self.texcoord_scale,
-            d => d,
+    fn differences(&self, [a, b, c]: [f32; 3]) -> [f32; 2] {
+        let turn = self.texcoord_scale;
+        let (a, b, c) = (a * turn, b * turn, c * turn);
+        let differences = [b - a, c - a];
+        if !self.unwrap {
+            return differences;
         }
+        let behind = a.max(b).max(c) - 0.5 * turn;
+        let turns = |coordinate: f32| if coordinate < behind { turn } else { 0.0 };
+        [differences[0] + (turns(b) - turns(a)), differences[1] + (turns(c) - turns(a))]
     }
 }
 

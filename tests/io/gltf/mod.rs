@@ -1,0 +1,10 @@
+//! Models: glTF in and out, as `read`, `write`, `refused` and `damage` say, before the Khronos validator too.
+
+mod builder;
+mod damage;
+mod read;
+mod refused;
+mod validator;
+mod write;
+
+pub use builder::Builder;
