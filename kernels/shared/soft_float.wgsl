@@ -1,8 +1,8 @@
 // IEEE binary32 in integers: round to nearest even. Numbers are bit patterns.
 //
 // WGSL's own + - * / sqrt may round otherwise, flush subnormals or be fused (DESIGN 3.2). No operand and no result is
-// an infinity or NaN, and a result below 2^-126 becomes zero: a kernel is written so that neither can be told from
-// the whole of IEEE. Where a native estimate is used, integers correct it.
+// an infinity or NaN. What lies below 2^-126 is left to the file beside this one: gradual.wgsl is the whole of IEEE,
+// flushing.wgsl is cheaper. Where a native estimate is used, integers correct it.
 // CPU twin: Rust's f32.
 
 const SIGN: u32 = 0x80000000u;
@@ -19,15 +19,6 @@ fn zero_below(least: u32, a: u32) -> u32 {
     return select(a, 0u, (a & ~SIGN) < least);
 }
 
-fn exponent_of(a: u32) -> i32 {
-    return i32((a >> 23u) & 0xffu);
-}
-
-// 24 bits with the leading one; of zero, zero.
-fn significand_of(a: u32) -> u32 {
-    return select((a & 0x7fffffu) | 0x800000u, 0u, (a & ~SIGN) == 0u);
-}
-
 // a 2^n for a result that is zero or normal.
 fn scaled(a: u32, n: i32) -> u32 {
     return select(a + (u32(n) << 23u), a, (a & ~SIGN) == 0u);
@@ -37,17 +28,6 @@ fn scaled(a: u32, n: i32) -> u32 {
 fn shifted_sticky(a: u32, n: i32) -> u32 {
     let bits = u32(min(n, 31));
     return (a >> bits) | u32((a & ((1u << bits) - 1u)) != 0u);
-}
-
-// The float nearest to m 2^(exponent - 153), 0 < m < 2^28: a significand and three bits more.
-fn rounded(sign: u32, exponent: i32, m: u32) -> u32 {
-    let left = i32(countLeadingZeros(m)) - 5;
-    let n = select(m << u32(max(left, 0)), (m >> 1u) | (m & 1u), left < 0);
-    let e = exponent - left;
-    let up = u32((n & 7u) + ((n >> 3u) & 1u) > 4u);
-    // The leading one counts the exponent up, and so does a carry out of the significand.
-    let magnitude = (u32(e - 1) << 23u) + (n >> 3u) + up;
-    return sign | select(magnitude, 0u, e < 1);
 }
 
 fn add(a: u32, b: u32) -> u32 {

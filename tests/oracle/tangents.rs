@@ -97,12 +97,14 @@ fn face(mesh: &Mesh, triangle: [u32; 3], formula: TangentFormula, unwrap: bool) 
             if length(n) == 0.0 {
                 return Face { handedness: d.signum(), ..nothing };
             }
+            // In f32 such a sliver may have no area, and give nothing.
+            let is_sliver = length(n) < 1e-6 * length(e1) * length(e2);
             let t = if x1 != 0.0 { times(1.0 / x1, e1) } else { times(1.0 / x2, e2) };
             let t = times(1.0 / length(t), t);
             let gradient = times(1.0 / d, sub(times(x1, e2), times(x2, e1)));
             let b = cross(times(1.0 / length(n), n), t);
             let b = if dot(b, gradient) > 0.0 { b } else { times(-1.0, b) };
-            Face { t, b, error: 2.0 * U, handedness: d.signum() }
+            Face { t, b, error: if is_sliver { 1.0 } else { 2.0 * U }, handedness: d.signum() }
         }
     }
 }

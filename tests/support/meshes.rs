@@ -159,16 +159,17 @@ pub fn uneven(columns: u32, rows: u32) -> Mesh {
     })
 }
 
-/// A disc around vertex 0 in the plane z = 0, whose u grows outwards: around the middle the tangents cancel, once v's
-/// jump from 1 to 0 is unwrapped.
-pub fn pole(around: u32) -> Mesh {
+/// Triangles around vertex 0 in the plane z = 0, with the same piece of the texture on each: around the middle the
+/// tangents cancel.
+pub fn pole(triangles: u32) -> Mesh {
     let mut points = vec![([0.0, 0.0], [0.0, 0.5])];
-    for step in 0..around {
-        let (sin, cos) = (TAU * f64::from(step) / f64::from(around)).sin_cos();
-        points.push(([cos as f32, sin as f32], [0.25, step as f32 / around as f32]));
+    for step in 0..triangles {
+        for (step, v) in [(step, 0.75), (step + 1, 0.25)] {
+            let (sin, cos) = (TAU * f64::from(step) / f64::from(triangles)).sin_cos();
+            points.push(([cos as f32, sin as f32], [0.25, v]));
+        }
     }
-    let triangles = (0..around).map(|step| [0, 1 + step, 1 + (step + 1) % around]).collect();
-    flat_mesh(&points, triangles)
+    flat_mesh(&points, (0..triangles).map(|step| [0, 1 + 2 * step, 2 + 2 * step]).collect())
 }
 
 /// Triangles around vertex 0, in the plane z = 0, mapped without distortion.

@@ -22,8 +22,8 @@ pub use corners::{
     Corner, angle, assert_same_tangents, corner_tangents, corners, direction, result_differences, tangent_differences,
 };
 pub use meshes::{
-    changed, cylinder, cylinder_with_a_jump, degenerate_triangles, every_mesh, fan, flat_mesh, hills, mesh,
-    mirrored_halves, plane, pole, soup, sphere, torus, without_normals,
+    changed, cube, cylinder, cylinder_with_a_jump, degenerate_triangles, every_mesh, fan, flat_mesh, hills, mesh,
+    mirrored_halves, plane, pole, soup, sphere, torus, uneven, without_normals,
 };
 pub use mikktspace::{bevy_tangents, meshopt_tangents};
 pub use pairs::{every_difference_pair, greatest_sum, map_of_pairs};

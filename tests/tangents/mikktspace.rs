@@ -93,28 +93,27 @@ fn sharing_vertices_changes_nothing() {
     assert_bevys("unshared", &alone, &options);
 }
 
-/// Corners that are further than 1e-3 degrees from meshopt's, or of another handedness.
-fn far_from_meshopt(mesh: &Mesh) -> usize {
+/// Corners that are further than this many degrees from meshopt's, or of another handedness.
+fn far_from_meshopt(mesh: &Mesh, degrees: f64) -> usize {
     let made: Vec<Corner> = corners(mesh, &tangents(mesh, &options(MissingNormals::Flat)));
     let other = meshopt_tangents(mesh, &made);
     let is_far = |(corner, other): &(&Corner, &[f32; 4])| {
         let off = angle(direction(corner.tangent), direction(**other)).to_degrees();
-        let is_far = off > 1e-3 || corner.tangent[3] != other[3];
-        if is_far {
-            println!("{off} degrees: got {corner:?}, meshopt {other:?}");
-        }
-        is_far
+        off > degrees || corner.tangent[3] != other[3]
     };
     assert!(!other.is_empty());
     made.iter().zip(&other).filter(is_far).count()
 }
 
+/// Its angles are off by up to 5e-4 radians, 0.03 degrees, and so are its weights: most tangents are off by less than
+/// 1e-3 degrees, few by more.
 #[test]
 fn whole_meshes_are_near_meshopts() {
     for (name, mesh) in every_mesh().into_iter().filter(|(_, mesh)| !mesh.triangles().is_empty()) {
-        let (far, all) = (far_from_meshopt(&mesh), 3 * mesh.triangles().len());
-        println!("{name}: {far} of {all} corners differ from meshopt's");
+        let all = 3 * mesh.triangles().len();
+        let (far, very_far) = (far_from_meshopt(&mesh, 1e-3), far_from_meshopt(&mesh, 0.03));
+        println!("{name}: {far} of {all} corners are above 1e-3 degrees, {very_far} above 0.03");
         let is_odd = ["soup", "degenerate", "poles", "1e", "pole", "double"].iter().any(|odd| name.contains(odd));
-        assert!(is_odd || far == 0, "{name}: {far} of {all} corners differ");
+        assert!(is_odd || (far * 50 <= all && very_far == 0), "{name}: {far}, {very_far} of {all} corners differ");
     }
 }

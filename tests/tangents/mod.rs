@@ -2,6 +2,7 @@
 
 mod against_f64;
 mod closed_forms;
+mod fast;
 mod laws;
 mod mikktspace;
 mod output;

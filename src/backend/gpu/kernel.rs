@@ -42,6 +42,16 @@ const PARALLAX: &str = include_str!("../../../kernels/parallax.wgsl");
 const INTEGER_MAPS: &str = include_str!("../../../kernels/parallax/integers.wgsl");
 const FLOAT_MAPS: &str = include_str!("../../../kernels/parallax/floats.wgsl");
 const FAST_MAPS: &str = include_str!("../../../kernels/parallax/fast.wgsl");
+const TANGENTS: &str = include_str!("../../../kernels/tangents.wgsl");
+const VECTORS: &str = include_str!("../../../kernels/tangents/vectors.wgsl");
+const TRIANGLES: &str = include_str!("../../../kernels/tangents/triangles.wgsl");
+const TWO_VECTORS: &str = include_str!("../../../kernels/tangents/two_vectors.wgsl");
+const LENGYEL: &str = include_str!("../../../kernels/tangents/lengyel.wgsl");
+const HEGDE: &str = include_str!("../../../kernels/tangents/hegde.wgsl");
+const MIKKTSPACE: &str = include_str!("../../../kernels/tangents/mikktspace.wgsl");
+const FANS: &str = include_str!("../../../kernels/tangents/fans.wgsl");
+const SUMMED: &str = include_str!("../../../kernels/tangents/summed.wgsl");
+const WEIGHTED: &str = include_str!("../../../kernels/tangents/weighted.wgsl");
 const READ_CODES: &str = include_str!("../../../kernels/shared/read_codes.wgsl");
 const FLOAT_NORMALS: &str = include_str!("../../../kernels/shared/float_normals.wgsl");
 const FAST_NORMALS: &str = include_str!("../../../kernels/shared/fast_normals.wgsl");
@@ -52,6 +62,10 @@ const NEAREST_FLOAT: &str = include_str!("../../../kernels/shared/nearest_float.
 const WIDE: &str = include_str!("../../../kernels/shared/wide.wgsl");
 const SIGNED: &str = include_str!("../../../kernels/shared/signed.wgsl");
 const SOFT_FLOAT: &str = include_str!("../../../kernels/shared/soft_float.wgsl");
+const FLUSHING: &str = include_str!("../../../kernels/shared/flushing.wgsl");
+const GRADUAL: &str = include_str!("../../../kernels/shared/gradual.wgsl");
+const NATIVE_FLOAT: &str = include_str!("../../../kernels/shared/native_float.wgsl");
+const ACOS: &str = include_str!("../../../kernels/shared/acos.wgsl");
 const UNIT: &str = include_str!("../../../kernels/shared/unit.wgsl");
 const FLOAT_PARALLAX: &str = include_str!("../../../kernels/shared/float_parallax.wgsl");
 const FAST_CODE: &str = include_str!("../../../kernels/shared/fast_code.wgsl");
@@ -64,52 +78,113 @@ pub(crate) const BAKE_INTEGERS: KernelSource = KernelSource {
 pub(crate) const BAKE_FLOATS: KernelSource = KernelSource {
     name: "bake, integer heights to floats",
     entry_point: "bake",
-    files: &[BAKE, INTEGER_HEIGHTS, FLOATS, HEIGHTS, CODES, NEAREST_CODE, NEAREST_FLOAT, WIDE, SOFT_FLOAT],
+    files: &[BAKE, INTEGER_HEIGHTS, FLOATS, HEIGHTS, CODES, NEAREST_CODE, NEAREST_FLOAT, WIDE, SOFT_FLOAT, FLUSHING],
 };
 pub(crate) const BAKE_FLOAT_HEIGHTS: KernelSource = KernelSource {
     name: "bake, float heights",
     entry_point: "bake",
-    files: &[BAKE, FLOAT_HEIGHTS, HEIGHTS, CODES, UNIT, FLOAT_PARALLAX, WIDE, SOFT_FLOAT],
+    files: &[BAKE, FLOAT_HEIGHTS, HEIGHTS, CODES, UNIT, FLOAT_PARALLAX, WIDE, SOFT_FLOAT, FLUSHING],
 };
 pub(crate) const BAKE_FAST: KernelSource = KernelSource {
     name: "bake, fast",
     entry_point: "bake",
-    files: &[BAKE, FAST, HEIGHTS, CODES, FAST_CODE, WIDE, SOFT_FLOAT],
+    files: &[BAKE, FAST, HEIGHTS, CODES, FAST_CODE, WIDE, SOFT_FLOAT, FLUSHING],
 };
 pub(crate) const BLEND_INTEGERS: KernelSource = KernelSource {
     name: "blend, integer maps",
     entry_point: "blend",
-    files: &[BLEND, BLENDED_INTEGERS, READ_CODES, CODES, NEAREST_CODE, NEAREST_FLOAT, SIGNED, WIDE, SOFT_FLOAT],
+    files: &[
+        BLEND,
+        BLENDED_INTEGERS,
+        READ_CODES,
+        CODES,
+        NEAREST_CODE,
+        NEAREST_FLOAT,
+        SIGNED,
+        WIDE,
+        SOFT_FLOAT,
+        FLUSHING,
+    ],
 };
 pub(crate) const BLEND_FLOATS: KernelSource = KernelSource {
     name: "blend, float maps",
     entry_point: "blend",
-    files: &[BLEND, BLENDED_FLOATS, READ_CODES, FLOAT_NORMALS, CODES, UNIT, WIDE, SOFT_FLOAT],
+    files: &[BLEND, BLENDED_FLOATS, READ_CODES, FLOAT_NORMALS, CODES, UNIT, WIDE, SOFT_FLOAT, FLUSHING],
 };
 pub(crate) const BLEND_FAST: KernelSource = KernelSource {
     name: "blend, fast",
     entry_point: "blend",
-    files: &[BLEND, BLENDED_FAST, READ_CODES, FAST_NORMALS, CODES, FAST_CODE, WIDE, SOFT_FLOAT],
+    files: &[BLEND, BLENDED_FAST, READ_CODES, FAST_NORMALS, CODES, FAST_CODE, WIDE, SOFT_FLOAT, FLUSHING],
 };
 pub(crate) const PARALLAX_INTEGERS: KernelSource = KernelSource {
     name: "parallax, integer maps",
     entry_point: "parallax",
-    files: &[PARALLAX, INTEGER_MAPS, READ_CODES, CODES, NEAREST_CODE, NEAREST_FLOAT, WIDE, SOFT_FLOAT],
+    files: &[PARALLAX, INTEGER_MAPS, READ_CODES, CODES, NEAREST_CODE, NEAREST_FLOAT, WIDE, SOFT_FLOAT, FLUSHING],
 };
 pub(crate) const PARALLAX_FLOATS: KernelSource = KernelSource {
     name: "parallax, float maps",
     entry_point: "parallax",
-    files: &[PARALLAX, FLOAT_MAPS, READ_CODES, FLOAT_NORMALS, CODES, UNIT, FLOAT_PARALLAX, WIDE, SOFT_FLOAT],
+    files: &[PARALLAX, FLOAT_MAPS, READ_CODES, FLOAT_NORMALS, CODES, UNIT, FLOAT_PARALLAX, WIDE, SOFT_FLOAT, FLUSHING],
 };
 pub(crate) const PARALLAX_FAST: KernelSource = KernelSource {
     name: "parallax, fast",
     entry_point: "parallax",
-    files: &[PARALLAX, FAST_MAPS, READ_CODES, FAST_NORMALS, CODES, FAST_CODE, WIDE, SOFT_FLOAT],
+    files: &[PARALLAX, FAST_MAPS, READ_CODES, FAST_NORMALS, CODES, FAST_CODE, WIDE, SOFT_FLOAT, FLUSHING],
+};
+pub(crate) const FRAMES_LENGYEL: KernelSource = KernelSource {
+    name: "frames, lengyel",
+    entry_point: "frames",
+    files: &[TANGENTS, TRIANGLES, TWO_VECTORS, LENGYEL, VECTORS, WIDE, SOFT_FLOAT, GRADUAL],
+};
+pub(crate) const FRAMES_LENGYEL_FAST: KernelSource = KernelSource {
+    name: "frames, lengyel, fast",
+    entry_point: "frames",
+    files: &[TANGENTS, TRIANGLES, TWO_VECTORS, LENGYEL, VECTORS, NATIVE_FLOAT],
+};
+pub(crate) const FRAMES_HEGDE: KernelSource = KernelSource {
+    name: "frames, hegde",
+    entry_point: "frames",
+    files: &[TANGENTS, TRIANGLES, TWO_VECTORS, HEGDE, VECTORS, WIDE, SOFT_FLOAT, GRADUAL],
+};
+pub(crate) const FRAMES_HEGDE_FAST: KernelSource = KernelSource {
+    name: "frames, hegde, fast",
+    entry_point: "frames",
+    files: &[TANGENTS, TRIANGLES, TWO_VECTORS, HEGDE, VECTORS, NATIVE_FLOAT],
+};
+pub(crate) const FRAMES_MIKKTSPACE: KernelSource = KernelSource {
+    name: "frames, mikktspace",
+    entry_point: "frames",
+    files: &[TANGENTS, TRIANGLES, MIKKTSPACE, VECTORS, WIDE, SOFT_FLOAT, GRADUAL],
+};
+pub(crate) const FRAMES_MIKKTSPACE_FAST: KernelSource = KernelSource {
+    name: "frames, mikktspace, fast",
+    entry_point: "frames",
+    files: &[TANGENTS, TRIANGLES, MIKKTSPACE, VECTORS, NATIVE_FLOAT],
+};
+pub(crate) const TANGENTS_SUMMED: KernelSource = KernelSource {
+    name: "tangents, summed",
+    entry_point: "tangents",
+    files: &[TANGENTS, FANS, SUMMED, VECTORS, WIDE, SOFT_FLOAT, GRADUAL],
+};
+pub(crate) const TANGENTS_SUMMED_FAST: KernelSource = KernelSource {
+    name: "tangents, summed, fast",
+    entry_point: "tangents",
+    files: &[TANGENTS, FANS, SUMMED, VECTORS, NATIVE_FLOAT],
+};
+pub(crate) const TANGENTS_WEIGHTED: KernelSource = KernelSource {
+    name: "tangents, weighted",
+    entry_point: "tangents",
+    files: &[TANGENTS, FANS, WEIGHTED, VECTORS, ACOS, WIDE, SOFT_FLOAT, GRADUAL],
+};
+pub(crate) const TANGENTS_WEIGHTED_FAST: KernelSource = KernelSource {
+    name: "tangents, weighted, fast",
+    entry_point: "tangents",
+    files: &[TANGENTS, FANS, WEIGHTED, VECTORS, NATIVE_FLOAT],
 };
 
 /// Every kernel that a backend may run.
 #[cfg(test)]
-pub(crate) const ALL: [KernelSource; 10] = [
+pub(crate) const ALL: [KernelSource; 20] = [
     BAKE_INTEGERS,
     BAKE_FLOATS,
     BAKE_FLOAT_HEIGHTS,
@@ -120,4 +195,14 @@ pub(crate) const ALL: [KernelSource; 10] = [
     PARALLAX_INTEGERS,
     PARALLAX_FLOATS,
     PARALLAX_FAST,
+    FRAMES_LENGYEL,
+    FRAMES_LENGYEL_FAST,
+    FRAMES_HEGDE,
+    FRAMES_HEGDE_FAST,
+    FRAMES_MIKKTSPACE,
+    FRAMES_MIKKTSPACE_FAST,
+    TANGENTS_SUMMED,
+    TANGENTS_SUMMED_FAST,
+    TANGENTS_WEIGHTED,
+    TANGENTS_WEIGHTED_FAST,
 ];

@@ -14,6 +14,7 @@ mod kernel;
 #[cfg(test)]
 mod layer_tests;
 mod layers;
+mod mesh_parts;
 mod operation;
 mod output;
 mod parallax;
@@ -21,6 +22,10 @@ mod parallax;
 mod reflection;
 mod self_test;
 mod slot;
+#[cfg(test)]
+mod tangent_tests;
+mod tangents;
+mod tangents_self_test;
 mod transfer;
 
 use crate::backend::{Backend, RowBytes};
@@ -28,13 +33,14 @@ use crate::error::{Error, Result};
 use crate::ops::bake::BakePlan;
 use crate::ops::blend::BlendPlan;
 use crate::ops::parallax::ParallaxPlan;
-use crate::ops::tangents::{self, TangentPlan};
+use crate::ops::tangents::TangentPlan;
 use crate::stream::{CodeSink, HeightBands, LayerBands};
 use device::Device;
 pub use hosted::{CodeTarget, HeightSource, Hosted, NormalBake};
 use layers::LayerOperation;
 use operation::{Operation, TEXELS_PER_INVOCATION, WORKGROUP, output_row_bytes};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use tangents::Limits;
 
 /// A GPU that has passed its self-test.
 pub(crate) struct Gpu {
@@ -145,8 +151,8 @@ impl Backend for Gpu {
     }
 
     fn tangents(&self, plan: &TangentPlan<'_>, out: &mut [[f32; 4]]) -> Result<()> {
-        tangents::tangents_of_fans(plan, out);
-        Ok(())
+        tangents_self_test::accept(&self.device, plan)?;
+        tangents::run(&self.device, plan, Limits::of(&self.device), out)
     }
 }
 

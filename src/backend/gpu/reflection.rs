@@ -4,7 +4,7 @@ use super::input::Input;
 use super::kernel::{ALL, BAKE_FLOAT_HEIGHTS, BAKE_FLOATS, BAKE_INTEGERS, Kernel, KernelSource};
 use super::operation::{Operation, PARAMS_BYTES, WORKGROUP};
 use super::output::Output;
-use super::{Gpu, bake, blend, layer_tests, parallax, self_test};
+use super::{Gpu, bake, blend, layer_tests, parallax, self_test, tangent_tests, tangents};
 use crate::exact::Scale;
 use crate::map::{Depth, Encoding, HeightType, NormalFormat, ParallaxFormat, Size};
 use crate::ops::Precision;
@@ -78,6 +78,13 @@ fn host_params(entry_point: &str) -> (Vec<Word>, usize) {
         "parallax" => (
             words! { parallax::Params: width rows marks nonce heights normals parallax },
             size_of::<parallax::Params>(),
+        ),
+        "frames" | "tangents" => (
+            words! {
+                tangents::Params: first end nonce positions edges triangles normals offsets corners frames tangents
+                    reserved
+            },
+            size_of::<tangents::Params>(),
         ),
         other => panic!("the host knows no parameters of {other}"),
     }
@@ -215,6 +222,7 @@ const HALF: Option<(Encoding, Depth)> = Some((Encoding::Float, Depth::Float16));
 #[test]
 fn constants_are_overrides_of_their_kernel() {
     let mut kernels = layer_tests::kernels();
+    kernels.extend(tangent_tests::kernels());
     for heights in [HeightType::U8, HeightType::U16, HeightType::F32] {
         for (normal, parallax) in [(UNORM8, None), (HALF, None), (None, HALF), (UNORM8, SNORM16), (HALF, UNORM8)] {
             for precision in [Precision::Exact, Precision::Fast] {

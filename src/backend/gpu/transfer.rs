@@ -23,6 +23,11 @@ const PATIENCE: Duration = Duration::from_secs(60);
 struct InFlight {
     slot: Slot,
     places: Places,
+    mapping: Mapping,
+}
+
+/// A slot whose upload and download are about to be mapped again.
+pub(super) struct Mapping {
     submission: wgpu::SubmissionIndex,
     mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
 }
@@ -102,11 +107,8 @@ impl<'a, O: Operation> Transfer<'a, O> {
         encoder.copy_buffer_to_buffer(&slot.outputs, 0, &slot.download, 0, output_bytes);
         let submission = device.queue.submit([encoder.finish()]);
 
-        let (report, mapped) = channel();
-        let also = report.clone();
-        slot.upload.map_async(MapMode::Write, .., move |result| drop(report.send(result)));
-        slot.download.map_async(MapMode::Read, .., move |result| drop(also.send(result)));
-        Ok(InFlight { slot, places, submission, mapped })
+        let mapping = Mapping::of(&slot, submission);
+        Ok(InFlight { slot, places, mapping })
     }
 
     /// Waits for the oldest band and hands its codes on.
@@ -115,7 +117,7 @@ impl<'a, O: Operation> Transfer<'a, O> {
         let device = self.device;
         let InFlight { slot, places, .. } = &flight;
         let view = device.guarded(|| {
-            flight.wait(device)?;
+            flight.mapping.wait(device)?;
             slot.download.get_mapped_range(..).map_err(|error| device.error(error))
         })?;
         let rows = places.rows as usize;
@@ -142,9 +144,18 @@ impl<'a, O: Operation> Transfer<'a, O> {
     }
 }
 
-impl InFlight {
-    /// Waits until the band was computed and its buffers can be mapped.
-    fn wait(&self, device: &Device) -> Result<()> {
+impl Mapping {
+    /// Asks for a slot's buffers as soon as a submission is done.
+    pub fn of(slot: &Slot, submission: wgpu::SubmissionIndex) -> Self {
+        let (report, mapped) = channel();
+        let also = report.clone();
+        slot.upload.map_async(MapMode::Write, .., move |result| drop(report.send(result)));
+        slot.download.map_async(MapMode::Read, .., move |result| drop(also.send(result)));
+        Self { submission, mapped }
+    }
+
+    /// Waits until the submission is done and the buffers are mapped.
+    pub fn wait(&self, device: &Device) -> Result<()> {
         let wait = PollType::Wait { submission_index: Some(self.submission.clone()), timeout: Some(PATIENCE) };
         let polled = device.device.poll(wait);
         device.check()?;

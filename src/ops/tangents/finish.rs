@@ -26,7 +26,7 @@ pub struct Tangents {
 }
 
 /// What was found in a mesh, counted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct TangentReport {
     /// Triangles of the mesh.
     pub triangles: usize,

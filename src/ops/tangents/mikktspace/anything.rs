@@ -14,20 +14,19 @@ pub(super) fn orient_anything(fabric: &mut Fabric<'_>) {
     if welds.is_empty() {
         return;
     }
+    let around: Vec<Around> = {
+        let fabric = &*fabric;
+        let blocks = welds.par_chunks(BLOCK);
+        blocks.map_init(Ring::default, |ring, welds| Around::new(fabric, ring, welds)).collect()
+    };
     // Of corners: the one across each edge, plus one; zero where there is none.
     let (mut next, mut previous) = (vec![0; 3 * fabric.faces.len()], vec![0; 3 * fabric.faces.len()]);
-    let mut starts = Vec::new();
-    let mut ring = Ring::default();
-    for weld in welds {
-        ring.set(fabric, weld);
-        for (&corner, &at) in ring.corners.iter().zip(&ring.next).filter(|&(_, &at)| at != NONE) {
-            let across = ring.corners[at as usize];
-            next[corner as usize] = across + 1;
-            previous[across as usize] = corner + 1;
-        }
-        starts.extend(ring.corners.iter().filter(|&&corner| fabric.faces[corner as usize / 3].role == Role::Directed));
+    for &(from, to) in around.iter().flat_map(|around| &around.links) {
+        next[from as usize] = to + 1;
+        previous[to as usize] = from + 1;
     }
-    starts.sort_unstable();
+    let mut starts: Vec<u32> = around.iter().flat_map(|around| &around.starts).copied().collect();
+    starts.par_sort_unstable();
 
     let mut is_assigned = vec![false; 3 * fabric.faces.len()];
     for start in starts {
@@ -49,6 +48,35 @@ pub(super) fn orient_anything(fabric: &mut Fabric<'_>) {
                 corner = across;
             }
         }
+    }
+}
+
+/// Welds of one task.
+const BLOCK: usize = 1024;
+
+/// What lies around some welds.
+struct Around {
+    /// Corners, and those across the edges from them.
+    links: Vec<(u32, u32)>,
+    /// Corners at which groups may begin.
+    starts: Vec<u32>,
+}
+
+impl Around {
+    fn new(fabric: &Fabric<'_>, ring: &mut Ring, welds: &[u32]) -> Self {
+        let mut this = Self { links: Vec::new(), starts: Vec::new() };
+        for &weld in welds {
+            ring.set(fabric, weld);
+            for (&corner, &at) in ring.corners.iter().zip(&ring.next) {
+                if at != NONE {
+                    this.links.push((corner, ring.corners[at as usize]));
+                }
+                if fabric.faces[corner as usize / 3].role == Role::Directed {
+                    this.starts.push(corner);
+                }
+            }
+        }
+        this
     }
 }
 

@@ -27,31 +27,48 @@ pub(super) enum Role {
     Degenerate,
 }
 
+/// Triangles of one task.
+const BLOCK: usize = 256;
+
 /// What each triangle is.
 pub(super) fn faces(surface: &Surface<'_>) -> Vec<Face> {
-    (0..surface.triangles.len()).into_par_iter().map(|triangle| Face::of(surface, triangle)).collect()
+    let none = Face { s: [0; 3], t: [0; 3], role: Role::Degenerate, is_positive: None };
+    let mut faces = vec![none; surface.triangles.len()];
+    faces.par_chunks_mut(BLOCK).enumerate().for_each(|(block, faces)| {
+        // A short first loop, of which the processor runs many turns at once: it waits for memory.
+        for (face, triangle) in faces.iter_mut().zip(block * BLOCK..) {
+            face.role = if is_degenerate(surface, triangle) { Role::Degenerate } else { Role::Anything };
+            face.is_positive = Some(mikktspace_area(surface.texture_edges(triangle)) > 0.0);
+        }
+        for (face, triangle) in faces.iter_mut().zip(block * BLOCK..) {
+            face.find_direction(surface, triangle);
+        }
+    });
+    faces
+}
+
+/// Whether two corners have one position.
+#[inline(always)]
+fn is_degenerate(surface: &Surface<'_>, triangle: usize) -> bool {
+    let [a, b, c] = surface.triangles[triangle];
+    let at = |vertex: u32| surface.positions[vertex as usize];
+    let ([ax, ay, az], [bx, by, bz], [cx, cy, cz]) = (at(a), at(b), at(c));
+    // Without branches.
+    ((ax == bx) & (ay == by) & (az == bz))
+        | ((bx == cx) & (by == cy) & (bz == cz))
+        | ((cx == ax) & (cy == ay) & (cz == az))
 }
 
 impl Face {
     #[inline(always)]
-    fn of(surface: &Surface<'_>, triangle: usize) -> Self {
-        let none = |role| Self { s: [0; 3], t: [0; 3], role, is_positive: None };
-        let [a, b, c] = surface.triangles[triangle];
-        let at = |vertex: u32| surface.positions[vertex as usize];
-        if at(a) == at(b) || at(b) == at(c) || at(c) == at(a) {
-            return none(Role::Degenerate);
+    fn find_direction(&mut self, surface: &Surface<'_>, triangle: usize) {
+        let frame = frame(TangentMethod::Mikktspace, &surface.edges(triangle));
+        if self.role == Role::Degenerate || is_zero(frame.t) || is_zero(frame.b) {
+            self.is_positive = None;
+            return;
         }
-        let edges = surface.edges(triangle);
-        let frame = frame(TangentMethod::Mikktspace, &edges);
-        if is_zero(frame.t) || is_zero(frame.b) {
-            return none(Role::Anything);
-        }
-        Self {
-            s: coarse(frame.t),
-            t: coarse(frame.b),
-            role: Role::Directed,
-            is_positive: Some(mikktspace_area([edges.d1, edges.d2]) > 0.0),
-        }
+        self.role = Role::Directed;
+        (self.s, self.t) = (coarse(frame.t), coarse(frame.b));
     }
 
     /// Whether two faces' directions, projected along n, are clearly not opposite: less than 79 degrees apart.

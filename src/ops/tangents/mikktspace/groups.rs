@@ -1,10 +1,14 @@
 //! Groups around a weld: chains of triangles of one handedness.
+//!
+//! Most welds have one group, whose fan is the row of all corners; nothing is written for them.
 
 use super::Fabric;
 use super::faces::Role;
 use super::rings::{NONE, Ring};
+use super::spokes::{Spoke, is_plainly_one_fan};
 use super::subgroups::{Member, subgroups};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Fans of welds whose row of corners is not one fan as it stands.
 #[derive(Default)]
@@ -37,14 +41,17 @@ impl Divided {
 
 /// Welds of one task.
 const WELDS: usize = 4096;
+/// Welds whose corners are read at once.
+const BLOCK: usize = 64;
 
 /// The fans of all welds whose corners are not one fan as they stand, in ascending order.
 pub(super) fn divide(fabric: &Fabric<'_>) -> Vec<Divided> {
     let welds = fabric.rows.rows();
     let parts = (0..welds.div_ceil(WELDS)).into_par_iter().map_init(Workspace::default, |workspace, part| {
         let mut divided = Divided::default();
-        for weld in part * WELDS..welds.min((part + 1) * WELDS) {
-            workspace.divide(fabric, weld as u32, &mut divided);
+        let end = welds.min((part + 1) * WELDS);
+        for begin in (part * WELDS..end).step_by(BLOCK) {
+            workspace.divide_block(fabric, begin..end.min(begin + BLOCK), &mut divided);
         }
         divided
     });
@@ -53,6 +60,8 @@ pub(super) fn divide(fabric: &Fabric<'_>) -> Vec<Divided> {
 
 #[derive(Default)]
 struct Workspace {
+    /// Of the corners of a block of welds.
+    spokes: Vec<Spoke>,
     ring: Ring,
     /// The group of each corner of the ring.
     groups: Vec<u32>,
@@ -62,12 +71,25 @@ struct Workspace {
 }
 
 impl Workspace {
-    #[inline]
+    fn divide_block(&mut self, fabric: &Fabric<'_>, welds: Range<usize>, divided: &mut Divided) {
+        let offsets = &fabric.rows.offsets()[welds.start..=welds.end];
+        let corners = offsets[0] as usize..offsets[offsets.len() - 1] as usize;
+        // A short loop, of which the processor runs many turns at once: it waits for memory.
+        self.spokes.clear();
+        self.spokes.extend(fabric.rows.corners()[corners].iter().map(|&corner| Spoke::of(fabric, corner)));
+        let mut rest = 0;
+        for (weld, ends) in welds.zip(offsets.windows(2)) {
+            let spokes = rest..rest + (ends[1] - ends[0]) as usize;
+            rest = spokes.end;
+            let is_exempt = fabric.last.as_ref().is_some_and(|last| last.concerns(weld as u32));
+            if is_exempt || !is_plainly_one_fan(&self.spokes[spokes], fabric.normal(weld as u32)) {
+                self.divide(fabric, weld as u32, divided);
+            }
+        }
+    }
+
     fn divide(&mut self, fabric: &Fabric<'_>, weld: u32, divided: &mut Divided) {
         let row = fabric.rows.row(weld as usize);
-        if row.is_empty() {
-            return;
-        }
         self.ring.set(fabric, weld);
         self.find_groups(fabric);
         if !self.is_one_fan(fabric, weld, row) {
@@ -76,7 +98,6 @@ impl Workspace {
     }
 
     /// A group is a chain of corners over paired edges, all of one handedness, with at least one that is directed.
-    #[inline]
     fn find_groups(&mut self, fabric: &Fabric<'_>) {
         let face = |at: usize| &fabric.faces[self.ring.corners[at] as usize / 3];
         self.groups.clear();
@@ -100,7 +121,6 @@ impl Workspace {
     }
 
     /// Whether all corners are directed, in one group and far from opposite.
-    #[inline]
     fn is_one_fan(&self, fabric: &Fabric<'_>, weld: u32, row: &[u32]) -> bool {
         let face = |corner: u32| &fabric.faces[corner as usize / 3];
         let n = fabric.normal(weld);
@@ -111,45 +131,47 @@ impl Workspace {
     }
 
     fn add_fans(&mut self, fabric: &Fabric<'_>, weld: u32, row: &[u32], divided: &mut Divided) {
-        let first_fan = divided.welds.len() as u32;
-        let first_member = divided.members.len();
+        let role = |corner: u32| fabric.faces[corner as usize / 3].role;
         self.sorted.clear();
         self.sorted.extend(self.ring.corners.iter().zip(&self.groups).map(|(&corner, &group)| Member {
             group,
             corner,
-            is_directed: fabric.faces[corner as usize / 3].role == Role::Directed,
+            is_directed: role(corner) == Role::Directed,
         }));
         self.sorted.sort_unstable();
-        let n = fabric.normal(weld);
-        for members in self.sorted.chunk_by(|a, b| a.group == b.group).filter(|members| members[0].group != NONE) {
-            let directed = || members.iter().filter(|member| member.is_directed).map(|member| member.corner);
-            let face = |corner: u32| &fabric.faces[corner as usize / 3];
-            let agrees = |corner: u32| directed().next().is_some_and(|first| face(corner).agrees(face(first), n));
-            if directed().all(agrees) {
-                let fan = divided.add(weld, directed());
-                divided.members.extend(members.iter().map(|member| (member.corner, fan)));
-            } else {
-                let rows = subgroups(fabric.surface, n, members, |corners| divided.add(weld, corners));
-                divided.members.extend(rows);
-            }
+        let first_member = divided.members.len();
+        let is_group = |members: &&[Member]| members[0].group != NONE;
+        for members in self.sorted.chunk_by(|a, b| a.group == b.group).filter(is_group) {
+            add_group(fabric, weld, members, divided);
         }
 
-        // Corners in no group; those of degenerate triangles take the tangent of the weld's first other corner.
-        let first_good = self.ring.corners.first();
-        let grouped = |corner: u32, divided: &Divided| {
-            divided.members[first_member..].iter().find(|member| member.0 == corner).map(|member| member.1)
-        };
-        let mut copied = first_good.and_then(|&corner| grouped(corner, divided));
         let mut empty = None;
-        let ungrouped = self.ring.corners.iter().zip(&self.groups).filter(|&(_, &group)| group == NONE);
-        for (&corner, _) in ungrouped {
+        for member in self.sorted.iter().filter(|member| member.group == NONE) {
             let fan = *empty.get_or_insert_with(|| divided.add(weld, []));
+            divided.members.push((member.corner, fan));
+        }
+        // Corners of degenerate triangles take the tangent of the weld's first other corner.
+        let first = self.ring.corners.first();
+        let members = &divided.members[first_member..];
+        let copied = first.and_then(|&first| members.iter().find(|member| member.0 == first)).map(|member| member.1);
+        for &corner in row.iter().filter(|&&corner| role(corner) == Role::Degenerate) {
+            let fan = copied.unwrap_or_else(|| *empty.get_or_insert_with(|| divided.add(weld, [])));
             divided.members.push((corner, fan));
         }
-        for &corner in row.iter().filter(|&&corner| fabric.faces[corner as usize / 3].role == Role::Degenerate) {
-            let fan = *copied.get_or_insert_with(|| *empty.get_or_insert_with(|| divided.add(weld, [])));
-            divided.members.push((corner, fan));
-        }
-        debug_assert!(divided.welds.len() as u32 > first_fan);
+    }
+}
+
+/// Adds the fan of a group, or those of its subgroups.
+fn add_group(fabric: &Fabric<'_>, weld: u32, members: &[Member], divided: &mut Divided) {
+    let n = fabric.normal(weld);
+    let face = |corner: u32| &fabric.faces[corner as usize / 3];
+    let directed = || members.iter().filter(|member| member.is_directed).map(|member| member.corner);
+    let Some(first) = directed().next() else { return };
+    if directed().all(|corner| face(corner).agrees(face(first), n)) {
+        let fan = divided.add(weld, directed());
+        divided.members.extend(members.iter().map(|member| (member.corner, fan)));
+    } else {
+        let fans = subgroups(fabric.surface, n, members, |corners| divided.add(weld, corners));
+        divided.members.extend(fans);
     }
 }

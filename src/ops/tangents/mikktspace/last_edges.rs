@@ -141,7 +141,7 @@ fn greatest_lower_end(fabric: &Fabric<'_>, representatives: &mut Representatives
         match ends.iter().map(lower).max() {
             Some(greatest) if greatest >= least => return Some(fabric.welds.of(greatest)),
             _ if least == 0 => return None,
-            _ => share *= 8,
+            _ => share *= 4,
         }
     }
 }

@@ -14,6 +14,7 @@ mod groups;
 mod last_edges;
 mod representatives;
 mod rings;
+mod spokes;
 mod subgroups;
 #[cfg(test)]
 mod tests;

@@ -16,7 +16,6 @@ const BUCKETS: u16 = 2048;
 pub(super) struct Representatives<'a> {
     fabric: &'a Fabric<'a>,
     buckets: Vec<u16>,
-    is_known: Vec<bool>,
     corners: Vec<u32>,
 }
 
@@ -25,7 +24,7 @@ pub(super) struct Representatives<'a> {
 struct Slot {
     position: [f32; 3],
     corner: u32,
-    /// Its weld, as the place among those of its bucket.
+    /// Its weld, or [`NONE`] if that is not wanted.
     weld: u32,
 }
 
@@ -43,84 +42,90 @@ impl<'a> Representatives<'a> {
             let place = (position(weld)[axis] - origin) / length;
             ((f32::from(BUCKETS) * place.clamp(0.0, 1.0)) as u16).min(BUCKETS - 1)
         };
-        Self {
-            fabric,
-            buckets: (0..welds).into_par_iter().map(bucket).collect(),
-            is_known: vec![false; BUCKETS.into()],
-            corners: vec![NONE; welds as usize],
-        }
+        Self { fabric, buckets: (0..welds).into_par_iter().map(bucket).collect(), corners: vec![NONE; welds as usize] }
     }
 
-    /// The representative of each of the welds that were looked up, and of some others; else [`NONE`].
+    /// The representative of each of the welds that were looked up; else [`NONE`].
     pub fn corners(&self) -> &[u32] {
         &self.corners
     }
 
     /// Finds the representatives of all welds.
     pub fn look_up_all(&mut self) {
-        self.look_up_buckets(vec![true; BUCKETS.into()]);
+        self.look_up(0..self.buckets.len() as u32);
     }
 
     /// Finds the representatives of some welds.
     pub fn look_up(&mut self, welds: impl IntoIterator<Item = u32>) {
-        let mut is_wanted = vec![false; BUCKETS.into()];
-        for weld in welds {
-            is_wanted[usize::from(self.buckets[weld as usize])] = true;
-        }
-        self.look_up_buckets(is_wanted);
-    }
-
-    fn look_up_buckets(&mut self, mut is_wanted: Vec<bool>) {
-        for (is_wanted, is_known) in is_wanted.iter_mut().zip(&mut self.is_known) {
-            *is_wanted &= !*is_known;
-            *is_known |= *is_wanted;
+        let mut is_wanted = vec![false; self.buckets.len()];
+        let mut has_wanted = vec![false; BUCKETS.into()];
+        for weld in welds.into_iter().filter(|&weld| self.corners[weld as usize] == NONE) {
+            is_wanted[weld as usize] = true;
+            has_wanted[usize::from(self.buckets[weld as usize])] = true;
         }
         let mut welds: Vec<(u16, u32)> = (self.buckets.par_iter().copied().zip(0..self.buckets.len() as u32))
-            .filter(|&(bucket, _)| is_wanted[usize::from(bucket)])
+            .filter(|&(bucket, _)| has_wanted[usize::from(bucket)])
             .collect();
         welds.par_sort_unstable();
-        let found: Vec<(&[(u16, u32)], Vec<u32>)> =
-            welds.par_chunk_by(|a, b| a.0 == b.0).map(|bucket| (bucket, first_corners(self.fabric, bucket))).collect();
-        for (bucket, corners) in found {
-            for (&(_, weld), corner) in bucket.iter().zip(corners) {
-                self.corners[weld as usize] = corner;
-            }
+        let buckets = welds.par_chunk_by(|a, b| a.0 == b.0);
+        let found: Vec<(u32, u32)> =
+            buckets.flat_map_iter(|bucket| first_corners(self.fabric, bucket, &is_wanted)).collect();
+        for (weld, corner) in found {
+            self.corners[weld as usize] = corner;
         }
     }
 }
 
-/// The representative of each weld of a bucket.
-fn first_corners(fabric: &Fabric<'_>, bucket: &[(u16, u32)]) -> Vec<u32> {
-    let mut slots = Vec::new();
-    for (&(_, weld), place) in bucket.iter().zip(0..) {
-        let position = fabric.surface.positions[fabric.welds.vertex(weld) as usize];
-        slots.extend(fabric.rows.row(weld as usize).iter().map(|&corner| Slot { position, corner, weld: place }));
-    }
+/// The wanted welds of a bucket, and their representatives.
+fn first_corners(fabric: &Fabric<'_>, bucket: &[(u16, u32)], is_wanted: &[bool]) -> Vec<(u32, u32)> {
     // Degenerate triangles come after all others.
-    let is_degenerate = |corner: u32| fabric.faces[corner as usize / 3].role == Role::Degenerate;
-    slots.sort_unstable_by_key(|slot| (is_degenerate(slot.corner), slot.corner));
-    let mut found = vec![NONE; bucket.len()];
+    let order = |corner: u32| {
+        let is_degenerate = fabric.faces[corner as usize / 3].role == Role::Degenerate;
+        u64::from(is_degenerate) << 32 | u64::from(corner)
+    };
+    let of_weld = |&(_, weld): &(u16, u32)| {
+        let corners = fabric.rows.row(weld as usize).iter();
+        corners.map(move |&corner| (order(corner), weld))
+    };
+    let mut corners: Vec<(u64, u32)> = bucket.iter().flat_map(of_weld).collect();
+    corners.sort_unstable();
+    let slot = |&(order, weld): &(u64, u32)| Slot {
+        position: fabric.surface.positions[fabric.welds.vertex(weld) as usize],
+        corner: order as u32,
+        weld: if is_wanted[weld as usize] { weld } else { NONE },
+    };
+    let mut slots: Vec<Slot> = corners.iter().map(slot).collect();
+    let mut found = Vec::new();
     halve(&mut slots, &mut found);
     found
 }
 
-/// Halves a bucket until nothing is strictly between its bounds.
+/// Halves a bucket until nothing is strictly between its bounds, as far as it holds wanted welds.
 ///
 /// The bounds' distance halves with each three calls, so the recursion ends after hundreds at most.
-fn halve(slots: &mut [Slot], found: &mut [u32]) {
-    let Some(first) = slots.first().map(|slot| slot.position) else { return };
+fn halve(slots: &mut [Slot], found: &mut Vec<(u32, u32)>) {
+    if slots.iter().all(|slot| slot.weld == NONE) {
+        return;
+    }
+    let first = slots[0].position;
     let (least, greatest) = slots
         .iter()
         .fold((first, first), |(low, high), slot| (least(low, slot.position), greatest(high, slot.position)));
     let axis = longest_axis(least, greatest);
     let middle = 0.5 * (greatest[axis] + least[axis]);
     if !(least[axis] < middle && middle < greatest[axis]) {
-        for slot in slots {
-            let found = &mut found[slot.weld as usize];
-            if *found == NONE {
-                *found = slot.corner;
+        let begin = found.len();
+        found.extend(slots.iter().filter(|slot| slot.weld != NONE).map(|slot| (slot.weld, slot.corner)));
+        // The sort is stable, so the first of equals stays the first.
+        found[begin..].sort_by_key(|&(weld, _)| weld);
+        let mut kept = begin;
+        for at in begin..found.len() {
+            if at == begin || found[at].0 != found[kept - 1].0 {
+                found[kept] = found[at];
+                kept += 1;
             }
         }
+        found.truncate(kept);
         return;
     }
     let (mut below, mut above) = (0, slots.len());

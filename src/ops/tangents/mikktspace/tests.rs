@@ -79,14 +79,15 @@ fn of_corners(surface: &Surface<'_>, fans: &Fans<'_>) -> Vec<Option<[f32; 4]>> {
 }
 
 fn bits(tangents: &[Option<[f32; 4]>]) -> Vec<Option<[u32; 4]>> {
-    // The reference never answers minus zero where the sum is zero.
     tangents.iter().map(|tangent| tangent.map(|tangent| tangent.map(f32::to_bits))).collect()
 }
 
 fn assert_equal(mesh: &Mesh, name: &str) {
     let (expected, found) = (Oracle::tangents(mesh), ours(mesh));
-    if let Some(corner) = (0..expected.len()).find(|&corner| bits(&expected)[corner] != bits(&found)[corner]) {
-        let count = (0..expected.len()).filter(|&corner| bits(&expected)[corner] != bits(&found)[corner]).count();
+    let differ = |(a, b): (Option<[u32; 4]>, Option<[u32; 4]>)| a != b;
+    let differences: Vec<bool> = bits(&expected).into_iter().zip(bits(&found)).map(differ).collect();
+    if let Some(corner) = differences.iter().position(|&differs| differs) {
+        let count = differences.iter().filter(|&&differs| differs).count();
         panic!("{name}: corner {corner}: {:?}, not {:?}; {count} differ; {mesh:?}", found[corner], expected[corner]);
     }
 }
@@ -104,10 +105,6 @@ impl Random {
 
     fn below(&mut self, end: usize) -> usize {
         (self.next() % end as u64) as usize
-    }
-
-    fn unit(&mut self) -> f32 {
-        (self.next() >> 40) as f32 / (1 << 24) as f32
     }
 
     fn shuffle<T>(&mut self, items: &mut [T]) {
@@ -263,7 +260,7 @@ fn surfaces_have_the_reference_s_bytes() {
 fn thousands_of_small_meshes_have_the_reference_s_bytes() {
     let mut random = Random(1);
     let (mut with_last_edges, mut changed_by_them) = (0, 0);
-    for number in 0..30_000 {
+    for number in 0..6000 {
         let (vertices, triangles) = (3 + random.below(10), 1 + random.below(24));
         let mesh = soup(&mut random, vertices, triangles);
         assert_equal(&mesh, &format!("mesh {number}"));
@@ -279,7 +276,7 @@ fn thousands_of_small_meshes_have_the_reference_s_bytes() {
         }
     }
     println!("{with_last_edges} meshes with last edges in an order of their own, {changed_by_them} changed by them");
-    assert!(with_last_edges > 1000 && changed_by_them > 100, "{with_last_edges} {changed_by_them}");
+    assert!(with_last_edges > 500 && changed_by_them > 50, "{with_last_edges} {changed_by_them}");
 }
 
 #[test]

@@ -15,8 +15,10 @@ pub(super) struct Welds<'a> {
     count: usize,
 }
 
-/// Parts of the range of hashes, each for one task with a table that fits a core's cache.
-const PARTS: u32 = 16;
+/// Parts of the range of hashes, each with a table that fits a core's cache.
+const PARTS: usize = 256;
+/// Vertices whose attributes and table fit a core's cache.
+const BLOCK: usize = 1 << 14;
 
 impl<'a> Welds<'a> {
     pub fn new(surface: &'a Surface<'a>) -> Self {
@@ -75,41 +77,112 @@ impl<'a> Welds<'a> {
 
 /// The lowest vertex with the same attributes, for each vertex.
 ///
-/// Each task takes the vertices whose hashes lie in its part, in ascending order. They lie anywhere, so the results
-/// are stored atomically; each has one writer.
+/// Equal vertices are most often near each other: blocks of vertices are searched first, then parts of what is left
+/// by hashes. Those of a part lie anywhere, so they are stored atomically; each has one writer.
 fn lowest_equals(surface: &Surface<'_>) -> Vec<u32> {
-    let vertices = surface.positions.len();
     let attributes = |vertex: u32| {
         let vertex = vertex as usize;
         let ([x, y, z], [a, b, c]) = (surface.positions[vertex], surface.normals[vertex]);
         let [u, v] = surface.texcoords[vertex];
         [x, y, z, a, b, c, u, v]
     };
-    let hashes: Vec<u32> = (0..vertices as u32).into_par_iter().map(|vertex| hash(attributes(vertex))).collect();
-    let lowest: Vec<AtomicU32> = (0..vertices as u32).into_par_iter().map(AtomicU32::new).collect();
-    (0..PARTS).into_par_iter().for_each(|part| {
-        let is_own = |hash: u32| hash % PARTS == part;
-        let own = hashes.iter().filter(|&&hash| is_own(hash)).count();
-        let slots = (2 * own).next_power_of_two();
-        // A hash and its vertex; u64::MAX where there is none, for no mesh has that many vertices.
-        let mut table = vec![u64::MAX; slots];
-        for (vertex, &hash) in (0..).zip(&hashes).filter(|&(_, &hash)| is_own(hash)) {
-            let mut slot = (hash / PARTS) as usize & (slots - 1);
-            loop {
-                let entry = table[slot];
-                if entry == u64::MAX {
-                    table[slot] = u64::from(hash) << 32 | u64::from(vertex);
-                    break;
+    let equals = |a: u32, b: u32| attributes(a) == attributes(b);
+    let vertices = surface.positions.len() as u32;
+    let mut of_blocks: Vec<u32> = (0..vertices).into_par_iter().collect();
+    let blocks: Vec<Parted> = of_blocks
+        .par_chunks_mut(BLOCK)
+        .map_init(Table::default, |table, block| {
+            table.clear(block.len());
+            let mut rest = Vec::with_capacity(block.len());
+            for lowest in block {
+                let vertex = *lowest;
+                let hash = hash(attributes(vertex));
+                *lowest = table.first(hash as usize, (hash, vertex), equals);
+                if *lowest == vertex {
+                    rest.push((hash, vertex));
                 }
-                if (entry >> 32) as u32 == hash && attributes(entry as u32) == attributes(vertex) {
-                    lowest[vertex as usize].store(entry as u32, Ordering::Relaxed);
-                    break;
-                }
-                slot = (slot + 1) & (slots - 1);
             }
+            Parted::new(&rest)
+        })
+        .collect();
+
+    let of_parts: Vec<AtomicU32> = (0..vertices).into_par_iter().map(AtomicU32::new).collect();
+    (0..PARTS).into_par_iter().for_each_init(Table::default, |table, part| {
+        table.clear(blocks.iter().map(|block| block.part(part).len()).sum());
+        for &(hash, vertex) in blocks.iter().flat_map(|block| block.part(part)) {
+            let first = table.first(hash as usize / PARTS, (hash, vertex), equals);
+            of_parts[vertex as usize].store(first, Ordering::Relaxed);
         }
     });
-    lowest.into_iter().map(AtomicU32::into_inner).collect()
+    of_blocks.par_iter_mut().for_each(|lowest| *lowest = of_parts[*lowest as usize].load(Ordering::Relaxed));
+    of_blocks
+}
+
+/// Vertices by hashes, with open addressing.
+#[derive(Default)]
+struct Table {
+    /// A hash and its vertex, or [`FREE`].
+    slots: Vec<(u32, u32)>,
+}
+
+/// No vertex: a mesh has fewer.
+const FREE: u32 = u32::MAX;
+
+impl Table {
+    /// Empties it, with room for some vertices.
+    fn clear(&mut self, vertices: usize) {
+        self.slots.clear();
+        self.slots.resize((2 * vertices).next_power_of_two(), (0, FREE));
+    }
+
+    /// The vertex that equals one with its hash, or that one itself, which is then in the table. The search begins at
+    /// a slot given by some bits of the hash.
+    #[inline(always)]
+    fn first(&mut self, mut slot: usize, (hash, vertex): (u32, u32), equals: impl Fn(u32, u32) -> bool) -> u32 {
+        loop {
+            slot &= self.slots.len() - 1;
+            let (its_hash, first) = self.slots[slot];
+            if first == FREE {
+                self.slots[slot] = (hash, vertex);
+                return vertex;
+            }
+            if its_hash == hash && equals(first, vertex) {
+                return first;
+            }
+            slot += 1;
+        }
+    }
+}
+
+/// Hashes and their vertices, those of each part together, else in ascending order.
+struct Parted {
+    sorted: Vec<(u32, u32)>,
+    ends: [u32; PARTS],
+}
+
+impl Parted {
+    fn new(entries: &[(u32, u32)]) -> Self {
+        let mut ends = [0; PARTS];
+        for (hash, _) in entries {
+            ends[*hash as usize % PARTS] += 1;
+        }
+        let mut begin = 0;
+        for end in &mut ends {
+            (begin, *end) = (begin + *end, begin);
+        }
+        let mut sorted = vec![(0, 0); entries.len()];
+        for &entry in entries {
+            let next = &mut ends[entry.0 as usize % PARTS];
+            sorted[*next as usize] = entry;
+            *next += 1;
+        }
+        Self { sorted, ends }
+    }
+
+    fn part(&self, part: usize) -> &[(u32, u32)] {
+        let begin = part.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.sorted[begin as usize..self.ends[part] as usize]
+    }
 }
 
 /// Of equal attributes, equal; of others, most likely not.
