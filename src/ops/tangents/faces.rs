@@ -50,22 +50,29 @@ vectorised! {
     fn look(surface: &Surface<'_>, triangles: &Triangles, handedness: &mut [i8], counts: &mut FaceCounts) {
         let wrapped = Surface { unwrap: false, ..*surface };
         let mut signs = [0; BLOCK];
-        let mut is_flat = [false; BLOCK];
-        let mut is_unwrapped = [false; BLOCK];
+        let mut is_flat = [0; BLOCK];
+        let mut is_unwrapped = [0; BLOCK];
         for i in 0..BLOCK {
             let edges = triangles.edges(surface, i);
-            signs[i] = super::handedness([edges.d1, edges.d2]);
-            is_flat[i] = is_zero(cross(scaled_to_one(edges.e1), scaled_to_one(edges.e2)));
-            is_unwrapped[i] = edges != triangles.edges(&wrapped, i);
+            let as_they_are = triangles.edges(&wrapped, i);
+            signs[i] = i32::from(super::handedness([edges.d1, edges.d2]));
+            is_flat[i] = i32::from(is_zero(cross(scaled_to_one(edges.e1), scaled_to_one(edges.e2))));
+            is_unwrapped[i] = i32::from(differ(edges.d1, as_they_are.d1) | differ(edges.d2, as_they_are.d2));
         }
-        for (i, handedness) in handedness.iter_mut().enumerate().take(BLOCK) {
-            *handedness = signs[i];
-            counts.without_area += usize::from(is_flat[i]);
+        let count = handedness.len().min(BLOCK);
+        for i in 0..count {
+            handedness[i] = signs[i] as i8;
+            counts.without_area += is_flat[i] as usize;
             counts.without_texture_area += usize::from(signs[i] == 0);
             counts.mirrored += usize::from(signs[i] < 0);
-            counts.unwrapped += usize::from(is_unwrapped[i]);
+            counts.unwrapped += is_unwrapped[i] as usize;
         }
     }
+}
+
+#[inline(always)]
+fn differ(a: [f32; 2], b: [f32; 2]) -> bool {
+    (a[0] != b[0]) | (a[1] != b[1])
 }
 
 impl FaceCounts {
@@ -76,5 +83,33 @@ impl FaceCounts {
             unwrapped: self.unwrapped + other.unwrapped,
             mirrored: self.mirrored + other.mirrored,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FaceCounts, Faces};
+    use crate::mesh::Mesh;
+    use crate::ops::tangents::Surface;
+
+    /// 3000 times the same five triangles: plain, mirrored, without area in space or in the texture, and across the
+    /// texture's edge.
+    #[test]
+    fn triangles_of_each_kind_are_counted() {
+        let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [3.0, 0.0, 0.0], [1.0, 1.0, 1.0]];
+        let texcoords = vec![[0.0, 0.25], [0.25, 0.25], [0.0, 0.5], [0.5, 0.25], [0.875, 0.25]];
+        let triangles = [[0, 1, 2], [0, 2, 1], [0, 1, 3], [4, 0, 2], [0, 2, 2]].repeat(3000);
+        let mesh = Mesh::new(positions, texcoords, triangles).unwrap();
+        let normals = [[0.0, 0.0, 1.0]; 5];
+
+        let faces = Faces::of(&Surface::new(&mesh, &normals, true));
+        assert!(faces.handedness.chunks(5).all(|five| five == [1, -1, 0, 1, 0]));
+        let expected = FaceCounts { without_area: 6000, without_texture_area: 6000, unwrapped: 3000, mirrored: 3000 };
+        assert_eq!(faces.counts, expected);
+        assert!(faces.are_mixed());
+
+        let faces = Faces::of(&Surface::new(&mesh, &normals, false));
+        assert!(faces.handedness.chunks(5).all(|five| five == [1, -1, 0, -1, 0]));
+        assert_eq!(faces.counts, FaceCounts { unwrapped: 0, mirrored: 6000, ..expected });
     }
 }

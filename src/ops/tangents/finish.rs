@@ -178,7 +178,7 @@ impl<'a> Vertices<'a> {
     /// Each vertex takes the normal and the tangent of its first corner; corners that have others become copies.
     fn split(
         mesh: &Mesh,
-        shading: &Shading<'_>,
+        shading: &'a Shading<'_>,
         fans: &Fans<'_>,
         of_fans: &[[f32; 4]],
         fan_is_directed: &[bool],
@@ -189,34 +189,44 @@ impl<'a> Vertices<'a> {
         let fan = |corner: usize| fans.owners.as_ref().map_or(shaded[corner], |owners| owners.fans[corner]) as usize;
         let normal = |corner: usize| shading.normals[shaded[corner] as usize];
         let first = first_corners(indices, mesh.positions().len());
-        let of_vertices = of_pieces(&first, |vertex, first| {
-            let of_vertex = |(vertex, &first): (usize, &u32)| {
-                if first == NONE {
-                    let normal = if shading.has_own_vertices { [0.0, 0.0, 1.0] } else { shading.normals[vertex] };
-                    let [x, y, z] = across(normal);
-                    return (normal, [x, y, z, sign_of_green(convention, NO_SIGN)], false);
+        let normals: Cow<'_, [[f32; 3]]> = if shading.has_own_vertices {
+            first.iter().map(|&first| if first == NONE { [0.0, 0.0, 1.0] } else { normal(first as usize) }).collect()
+        } else {
+            Cow::Borrowed(&shading.normals)
+        };
+        let mut tangents = vec![[0.0; 4]; first.len()];
+        let of_first = of_pieces_mut(&mut tangents, |vertex, tangents| {
+            let of_vertex = |(vertex, tangent): (usize, &mut [f32; 4])| {
+                if first[vertex] == NONE {
+                    let [x, y, z] = across(normals[vertex]);
+                    *tangent = [x, y, z, sign_of_green(convention, NO_SIGN)];
+                    return (NONE, false);
                 }
-                let fan = fan(first as usize);
-                (normal(first as usize), of_fans[fan], fan_is_directed[fan])
+                let fan = fan(first[vertex] as usize);
+                *tangent = of_fans[fan];
+                (fan as u32, fan_is_directed[fan])
             };
-            (vertex..).zip(first).map(of_vertex).collect::<Vec<_>>()
+            (vertex..).zip(tangents).map(of_vertex).unzip::<u32, bool, Vec<_>, Vec<_>>()
         });
+        let (fan_of_vertex, is_directed): (Vec<_>, Vec<_>) = of_first.into_iter().unzip();
+        let fan_of_vertex = fan_of_vertex.concat();
         let mut this = Self {
-            tangents: of_vertices.iter().flatten().map(|(_, tangent, _)| *tangent).collect(),
-            normals: of_vertices.iter().flatten().map(|(normal, ..)| *normal).collect(),
-            is_directed: of_vertices.iter().flatten().map(|(.., is_directed)| *is_directed).collect(),
+            tangents,
+            normals,
+            is_directed: is_directed.concat(),
             copies: Vec::new(),
             triangles: None,
             mirrored: 0,
             unused: first.iter().filter(|&&first| first == NONE).count(),
         };
 
-        // Corners that do not have their vertex's normal and tangent: few.
+        // Corners that do not have their vertex's normal and tangent: few, and most others have its fan.
         let differ = of_pieces(indices, |corner, indices| {
             let differs = |&(corner, &vertex): &(usize, &u32)| {
-                let first = first[vertex as usize] as usize;
-                let look = |corner: usize| (bits(normal(corner)), bits(of_fans[fan(corner)]));
-                (fan(corner), shaded[corner]) != (fan(first), shaded[first]) && look(corner) != look(first)
+                let (fan, vertex) = (fan(corner), vertex as usize);
+                (shading.has_own_vertices || fan != fan_of_vertex[vertex] as usize)
+                    && (bits(normal(corner)), bits(of_fans[fan]))
+                        != (bits(this.normals[vertex]), bits(this.tangents[vertex]))
             };
             (corner..).zip(indices).filter(differs).map(|(corner, _)| corner).collect::<Vec<usize>>()
         });

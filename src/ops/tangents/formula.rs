@@ -210,7 +210,7 @@ pub(crate) fn times(factor: f32, v: [f32; 3]) -> [f32; 3] {
 
 #[inline(always)]
 pub(crate) fn is_zero(v: [f32; 3]) -> bool {
-    v[0] == 0.0 && v[1] == 0.0 && v[2] == 0.0
+    (v[0] == 0.0) & (v[1] == 0.0) & (v[2] == 0.0)
 }
 
 /// 1 above zero, else -1.
