@@ -1,5 +1,5 @@
-//! texbake bakes height maps into tangent-space normal maps and parallax maps, and blends normal maps, on a GPU through
-//! WGSL compute kernels or on the CPU.
+//! texbake bakes height maps into tangent-space normal maps and parallax maps, blends normal maps, and computes the
+//! tangents of the meshes that they are mapped on, on a GPU through WGSL compute kernels or on the CPU.
 //!
 //! In [`Precision::Exact`], the default, every backend writes the same bytes, and where all inputs hold 8- or 16-bit
 //! codes each code is the one nearest to what the formula gives in real arithmetic.
@@ -23,6 +23,8 @@
 //! - [`Baker::bake`] makes normal and parallax map in one pass; [`Baker::blend`] makes one normal map of two.
 //! - [`Baker::bake_rows`] and [`Baker::blend_rows`] work while rows are read and written, in memory that does not grow
 //!   with the map; [`stream`] has the traits of their ends.
+//! - [`Baker::tangents`] computes the tangents of a [`Mesh`]; [`io::Model`] reads meshes from glTF and OBJ files, and
+//!   writes them with tangents.
 //! - [`inspect`] finds what is wrong with a normal map, mends it, and compares two.
 #![cfg_attr(feature = "gpu", doc = "- [`gpu::Hosted`] bakes on the caller's own wgpu device, without a readback.")]
 //!
@@ -36,6 +38,7 @@
 //! | interlaced PNG, TGA, BMP, JPEG, WebP heights | besides, the whole map, decoded |
 //! | PNG heights that wrap, baked into EXR | besides, the whole map up to 64 MiB; larger ones are decoded twice |
 //! | a detail map that tiles, in a blend | besides, the whole detail map |
+//! | [`Baker::tangents`] | the mesh, the corners at each of its vertices, and what comes out |
 //!
 //! # What is computed
 //!
@@ -59,6 +62,47 @@
 //!
 //! On integer codes all of this is A / sqrt(S) with integers A and S, which is rounded by comparing integers.
 //!
+//! # Tangents
+//!
+//! A triangle with the edges e1, e2 from its first corner, in space, and (x1, y1), (x2, y2), in the texture, has the
+//! directions t, in which u grows, and b, in which v grows. A vertex with the normal n gets a tangent t' from the
+//! triangles around it, and the sign w that rebuilds the bitangent b':
+//!
+//! ```text
+//! t = (e1 y2 - e2 y1) / (x1 y2 - x2 y1),  b = (e2 x1 - e1 x2) / (x1 y2 - x2 y1)  (FGED2 eq. 7.37)
+//! t' = t - (t . n) n, normalised, t being the sum over the triangles             (eq. 7.38)
+//! b' = w (n x t'),  w the sign of det(t, b, n)                                   (eq. 7.40)
+//! ```
+//!
+//! | method | what a triangle adds at a corner |
+//! | --- | --- |
+//! | [`TangentMethod::Mikktspace`] | t projected on the tangent plane, of length one, times the angle at the corner |
+//! | [`TangentMethod::Lengyel`] | t (listing 7.4) |
+//! | [`TangentMethod::Hegde`] | its first edge along which u changes, of length one, towards growing u |
+//!
+//! Vertices are not shared across what a tangent cannot be shared across: with `Mikktspace` they are split as the
+//! reference implementation groups triangles, else where triangles of both handednesses meet.
+//!
+//! Texture coordinates are glTF's: v grows **down** the image. Green up ([`Convention::Gl`], what glTF's normal maps
+//! have) is against v, so there w is +1 where the texture is not mirrored: seen from outside, u to the right and green
+//! up. [`Convention::Dx`] is the opposite sign. The same mesh with v growing up, as in OBJ files, has v turned first.
+//!
+//! `Mikktspace` on triangles gives the tangents, splits and signs of Mikkelsen's reference implementation to the bit,
+//! but for:
+//!
+//! - where the reference leaves a zero vector or none, a tangent is made up, and counted: see below;
+//! - positions and texture coordinates are first multiplied by powers of two, each by one of its own. That changes no
+//!   bit of the result, but meshes of 1e20 and of 1e-20 have one, where the reference overflows or drops them;
+//! - faces of four corners are triangles here, however they were split; the reference splits a square by itself;
+//! - normals that are zero or longer or shorter than one by more than 1 % are repaired first; others are taken as they
+//!   are.
+//!
+//! Four components are what glTF and engines read. [`Tangents::with_sign_in_lowest_bit`] packs the sign into three, as
+//! FGED2 suggests (for programs only: no file format has it), and [`Tangents::bitangents`] is eq. 7.40.
+//!
+//! The arithmetic of `exact` is IEEE f32 in a written order, as for float maps. What decides which triangles share a
+//! tangent is found on the CPU, whatever runs the rest.
+//!
 //! # Degenerate cases
 //!
 //! | case | result |
@@ -77,6 +121,28 @@
 //! | a blend of which nothing is left, (0, 0, 0) | (0, 0, 1) |
 //! | a float normal with a component that is NaN, infinite or beyond 65536 | [`Error::NoDirection`] names the first |
 //! | float components of normals below 2^-25 in magnitude | count as zero |
+//!
+//! Of meshes, all counted in [`TangentReport`]:
+//!
+//! | case | result |
+//! | --- | --- |
+//! | a position, texture coordinate or normal that is NaN or infinite | [`Error::Vertex`] names the first |
+//! | an index that is no vertex's | [`Error::Parameter`] names the triangle |
+//! | coordinates of 1e20, of 1e-20 | the bits of unit scale: only ratios matter |
+//! | a triangle without area in the texture | adds nothing to its vertices |
+//! | a triangle without area in space | adds what its edges say; `Hegde`: nothing; `Mikktspace`: as the reference |
+//! | a vertex with such triangles only, or whose tangents cancel (a pole) | the axis furthest from n, projected |
+//! | a vertex without triangles | the same |
+//! | a vertex between mirrored halves | split: one for each handedness |
+//! | a mapping that is upside down (v inverted) | w is negated; n is the mesh's own, so nothing else changes |
+//! | u that jumps from 1 to 0 across shared vertices (a cylinder) | taken at its word, or [`TangentOptions::unwrap`] |
+//! | no normals | [`MissingNormals`]: each triangle's own, which splits its vertices, or smooth ones |
+//! | a zero among the normals | the smooth normal of the triangles at that position; (0, 0, 1) if they have no area |
+//! | a normal whose length is off by more than 1 % | normalised |
+//! | no triangles, no vertices | no tangents |
+
+#[macro_use]
+mod vectorised;
 
 mod backend;
 mod baker;

@@ -14,3 +14,4 @@ mod parallax;
 mod sabotage;
 mod stream;
 mod support;
+mod tangents;

@@ -2,7 +2,7 @@
 
 const FRAME_WORDS: u32 = 7u;
 
-const SMALLEST_DIFFERENCE: u32 = 0x2b800000u;  // 2^-40: differences of texture coordinates below count as zero
+const SMALLEST_DIFFERENCE: u32 = 0x35800000u;  // 2^-20: differences of texture coordinates below count as zero
 
 struct Frame {
     t: vec3<u32>,

@@ -3,7 +3,9 @@
 use super::{Baker, Ran};
 use crate::error::{Error, Result};
 use crate::mesh::{CornerAdjacency, Mesh};
-use crate::ops::tangents::{Fans, Shading, Surface, TangentMethod, TangentOptions, TangentPlan, Tangents, finish};
+use crate::ops::tangents::{
+    Faces, Fans, Shading, Surface, TangentMethod, TangentOptions, TangentPlan, Tangents, finish,
+};
 
 impl Baker {
     /// Computes a tangent for every vertex of a mesh, and splits vertices whose triangles need different ones.
@@ -45,19 +47,20 @@ impl Baker {
         adjacency.map_or(Ok(()), |adjacency| check_fits(adjacency, mesh))?;
         let shading = Shading::new(mesh, options.missing_normals);
         let surface = Surface::new(&shading.mesh, &shading.normals, options.unwrap);
+        let faces = Faces::of(&surface);
         let own;
         let fans = match (options.method, adjacency.filter(|_| !shading.has_own_vertices)) {
             (TangentMethod::Mikktspace, _) => Fans::of_mikktspace(&surface),
-            (_, Some(adjacency)) => Fans::by_handedness(&surface, adjacency),
+            (_, Some(adjacency)) => Fans::by_handedness(&surface, &faces, adjacency),
             (_, None) => {
                 own = CornerAdjacency::of(&shading.mesh);
-                Fans::by_handedness(&surface, &own)
+                Fans::by_handedness(&surface, &faces, &own)
             }
         };
         let plan = TangentPlan { method: options.method, precision: options.precision, surface: &surface, fans: &fans };
-        let mut of_fans = vec![[f32::NAN; 4]; fans.count()];
+        let mut of_fans = vec![[0.0; 4]; fans.count()];
         let (ran, ()) = self.run(|backend| backend.tangents(&plan, &mut of_fans))?;
-        Ok((ran, finish(mesh, &shading, &fans, of_fans, options)))
+        Ok((ran, finish(mesh, &shading, &faces, &fans, of_fans, options)))
     }
 }
 

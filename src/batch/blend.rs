@@ -238,7 +238,7 @@ impl BlendReport {
             tile: job.options.tile,
             format: job.options.format.into(),
             precision: job.options.precision.to_string(),
-            run: RunReport::new(
+            run: RunReport::of_maps(
                 outcome,
                 blended.map(|blended| (&blended.ran, blended.size)),
                 &job.baker,

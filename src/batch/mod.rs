@@ -1,5 +1,6 @@
 //! Many textures: which files are height maps, what their maps are called, how they are baked side by side, and what
-//! is reported about them. One pair of normal maps: how it is blended, and what is reported about it.
+//! is reported about them. One pair of normal maps: how it is blended, and what is reported about it. One model: how
+//! its meshes get tangents, and what is reported about them.
 //!
 //! ```no_run
 //! use std::sync::Arc;
@@ -31,6 +32,7 @@ mod offsets;
 mod outcome;
 mod report;
 mod role;
+mod tangents;
 mod targets;
 
 pub use blend::{BlendJob, BlendOutcome, BlendReport, FormatReport, LayerFacts, LayerReport, UsedWeights};
@@ -41,5 +43,10 @@ pub use naming::{MapKind, NameTemplate, OUTPUT_EXTENSIONS};
 pub use normals::{Degenerate, NormalInput};
 pub use offsets::{Decoding, ParallaxNumbers, ParallaxSidecar, WelshNumbers, describe_codes};
 pub use outcome::Outcome;
-pub use report::{FileReport, FileResult, JsonFile, Options, Outputs, Report, RunReport, Totals, UsedScale};
+pub use report::{
+    FileReport, FileResult, JsonFile, Options, Outputs, Report, RunReport, SizeReport, Totals, UsedScale,
+};
+pub use tangents::{
+    LeftOutReport, ModelTangents, ModelTangentsReport, PrimitiveTangents, TangentJob, TangentOptionsReport,
+};
 pub use targets::Files;

@@ -117,16 +117,24 @@ pub struct RunReport {
     pub reason: String,
     /// Why another backend failed before.
     pub fallback: Option<String>,
-    /// Texels in a row.
-    pub width: Option<usize>,
-    /// Rows.
-    pub height: Option<usize>,
+    /// The size of its maps; not there for work on meshes.
+    #[serde(flatten)]
+    pub size: Option<SizeReport>,
     /// From opening the inputs to closing the outputs; null if the inputs were never opened.
     pub milliseconds: Option<f64>,
     /// Bytes of the inputs.
     pub bytes_in: u64,
     /// Bytes of the outputs.
     pub bytes_out: u64,
+}
+
+/// The size of maps; null if they were never opened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct SizeReport {
+    /// Texels in a row.
+    pub width: Option<usize>,
+    /// Rows.
+    pub height: Option<usize>,
 }
 
 /// The options of a file as text.
@@ -264,14 +272,20 @@ impl FileResult {
 }
 
 impl RunReport {
-    /// What `outcome` says; how it ran and the size of its maps are there if it went well.
-    pub(super) fn new<T>(
+    /// What `outcome` of work on maps says; how it ran and their size are there if it went well.
+    pub(super) fn of_maps<T>(
         outcome: &Outcome<T>,
         done: Option<(&Ran, Size)>,
         baker: &Baker,
         failure: Option<String>,
     ) -> Self {
         let (ran, size) = done.unzip();
+        let size = SizeReport { width: size.map(Size::width), height: size.map(Size::height) };
+        Self { size: Some(size), ..Self::new(outcome, ran, baker, failure) }
+    }
+
+    /// What `outcome` says; how it ran is there if it went well.
+    pub(super) fn new<T>(outcome: &Outcome<T>, ran: Option<&Ran>, baker: &Baker, failure: Option<String>) -> Self {
         Self {
             result: FileResult::of(outcome),
             error: failure,
@@ -280,8 +294,7 @@ impl RunReport {
             adapter: ran.map(|ran| ran.device.clone()),
             reason: baker.reason().to_owned(),
             fallback: ran.and_then(|ran| ran.fallback.clone()),
-            width: size.map(Size::width),
-            height: size.map(Size::height),
+            size: None,
             milliseconds: outcome.time.map(|time| (time.as_secs_f64() * 1e6).round() / 1e3),
             bytes_in: outcome.bytes_in,
             bytes_out: outcome.bytes_out,
@@ -304,7 +317,12 @@ impl FileReport {
             depth: baked.map(|baked| baked.height_type.to_string()),
             scale: scale.map(|s| UsedScale { x: ratio(s.x, s.q), y: ratio(s.y, s.q), exact: s.exact }),
             parallax: ParallaxNumbers::of(job, outcome, iterations),
-            run: RunReport::new(outcome, baked.map(|baked| (&baked.ran, baked.size)), &job.baker, job.failure(outcome)),
+            run: RunReport::of_maps(
+                outcome,
+                baked.map(|baked| (&baked.ran, baked.size)),
+                &job.baker,
+                job.failure(outcome),
+            ),
         }
     }
 }

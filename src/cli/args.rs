@@ -9,7 +9,8 @@ use texbake::batch::{MapKind, NameTemplate, OUTPUT_EXTENSIONS};
 use texbake::io::Channel;
 use texbake::{Channels, Convention, Depth, Encoding, Precision, Rational};
 
-/// Bakes height maps into normal and parallax maps, and blends normal maps: the same bytes on every CPU and GPU
+/// Bakes height maps into normal and parallax maps, blends normal maps, and computes tangents for meshes: the same
+/// bytes on every CPU and GPU
 #[derive(Parser, Debug)]
 #[command(name = "texbake", version, arg_required_else_help = true, max_term_width = 110)]
 #[command(after_help = "\
@@ -18,6 +19,7 @@ Examples:
   texbake normal height.png -o normal.png --scale 24
   texbake parallax height.png -o parallax.png --scale 24 --json
   texbake blend base_normal.png detail_normal.png -o normal.png --tile
+  texbake tangents model.glb -o model_t.glb
   texbake devices
 
 Exit status: 0 all went well, 1 something failed, 2 wrong arguments or
@@ -33,6 +35,7 @@ pub enum Command {
     Parallax(Box<ParallaxArguments>),
     Bake(Box<BakeArguments>),
     Blend(Box<BlendArguments>),
+    Tangents(Box<super::tangents::TangentsArguments>),
     Check(Box<super::check::CheckArguments>),
     Diff(Box<super::diff::DiffArguments>),
     Devices(DevicesArguments),

@@ -14,6 +14,7 @@ mod print;
 mod progress;
 mod settings;
 mod single;
+mod tangents;
 mod values;
 
 use args::{Arguments, Command};
@@ -31,6 +32,7 @@ pub fn run() -> ExitCode {
         Command::Parallax(arguments) => parallax::parallax(arguments),
         Command::Bake(arguments) => bake::bake(arguments),
         Command::Blend(arguments) => blend::blend(arguments),
+        Command::Tangents(arguments) => tangents::tangents(arguments),
         Command::Check(arguments) => check::check(arguments),
         Command::Diff(arguments) => diff::diff(arguments),
         Command::Devices(arguments) => devices::devices(arguments),

@@ -3,7 +3,10 @@
 use comfy_table::{CellAlignment, Table, presets};
 use std::cmp::Reverse;
 use std::io::Write;
-use texbake::batch::{BlendJob, BlendOutcome, FileResult, Job, Outcome, ParallaxNumbers, Totals, describe_codes};
+use texbake::batch::{
+    BlendJob, BlendOutcome, FileResult, Job, ModelTangents, Outcome, ParallaxNumbers, TangentJob, Totals,
+    describe_codes,
+};
 use texbake::{Baked, Baker, Device, HeightType, NormalFormat, Ran, Scale, Size};
 
 /// Longer folders get a table of what was not baked, and of the slowest.
@@ -89,6 +92,53 @@ pub fn blend_line(job: &BlendJob, method: &str, blended: &BlendOutcome) -> Optio
         job.options.precision,
         how_it_ran(&done.ran, done.size, &job.baker, &blended.outcome),
     ))
+}
+
+/// Of which meshes tangents were computed, what was found in them, where and why there, and how fast.
+pub fn tangents_line(job: &TangentJob, outcome: &Outcome<ModelTangents>) -> Option<String> {
+    let model = outcome.result.as_ref().ok()?;
+    let (total, options) = (model.total(), &job.options);
+    let mut line = format!(
+        "{}: {} of {}, {}, {}, {}, {}, {}",
+        job.output.display(),
+        model.with_tangents(),
+        plural(model.with_tangents() + model.left_out.len(), "primitive"),
+        plural(total.vertices, "vertex"),
+        plural(total.triangles, "triangle"),
+        options.method,
+        options.precision,
+        options.convention,
+    );
+    for (count, what) in [
+        (total.copies, "made by splits"),
+        (total.mirrored, "between mirrored halves"),
+        (total.undirected, "undirected"),
+        (total.welded, "welded"),
+        (total.normals_made + total.normals_normalised, "with repaired normals"),
+    ] {
+        if count > 0 {
+            line += &format!(", {count} {what}");
+        }
+    }
+    if let Some(ran) = &model.ran {
+        let seconds = model.computing.as_secs_f64();
+        let rate = total.triangles as f64 / 1e6 / seconds.max(1e-9);
+        let milliseconds = seconds * 1e3;
+        line += &format!("; {} ({})", ran.name(), job.baker.reason());
+        line += &format!("; {milliseconds:.1} ms, {rate:.1} Mtriangle/s");
+    }
+    let (all, bytes_in, bytes_out) = (milliseconds(outcome), bytes(outcome.bytes_in), bytes(outcome.bytes_out));
+    line += &format!("; {all} with files, {bytes_in} in, {bytes_out} out");
+    Some(line)
+}
+
+/// `1 vertex`, `2 vertices`.
+fn plural(count: usize, what: &str) -> String {
+    match (count, what) {
+        (1, what) => format!("1 {what}"),
+        (_, "vertex") => format!("{count} vertices"),
+        _ => format!("{count} {what}s"),
+    }
 }
 
 /// `unorm 8 xyz gl`.

@@ -86,6 +86,12 @@ pub fn iterations(text: &str) -> Result<NonZeroU32, String> {
     steps.ok_or_else(|| "it must be a whole number from 1 to 1000".into())
 }
 
+/// An angle up to a right one.
+pub fn degrees(text: &str) -> Result<f32, String> {
+    let angle = text.parse().ok().filter(|angle| (0.0..=90.0).contains(angle));
+    angle.ok_or_else(|| "it must be a number of degrees from 0 to 90".into())
+}
+
 /// The steps of FGED2 listing 7.9.
 pub const USUAL_ITERATIONS: NonZeroU32 = NonZeroU32::new(4).unwrap();
 

@@ -51,3 +51,12 @@ pub(super) fn check_deflated(path: &Path, size: Size, claimed: u128, stored: u64
     let reason = format!("its header claims {size} texels, which cannot come out of {stored} bytes: it is truncated");
     Err(Error::file(path, reason, "copy or export it again"))
 }
+
+/// Fails if the `stored` bytes of a model, or of a file that belongs to it, are above `limit`.
+pub(super) fn check_model(path: &Path, stored: u64, limit: u64) -> Result<()> {
+    if stored <= limit {
+        return Ok(());
+    }
+    let reason = format!("it has {stored} bytes, and {limit} of the limit are left");
+    Err(Error::file(path, reason, "raise it with --max-bytes"))
+}

@@ -1,4 +1,4 @@
-//! Height maps and normal maps in, normal maps and parallax maps out.
+//! Height maps and normal maps in, normal maps and parallax maps out; models in and out ([`Model`]).
 //!
 //! A file's rows pass three steps, one module each: a decoder gives interleaved samples (`samples`), `channel`
 //! picks the height of each texel or `normal` its components, and `srgb` undoes a wrong colour space of heights where
@@ -9,9 +9,11 @@ mod channel;
 mod damage;
 mod exr;
 mod format;
+mod gltf;
 mod groups;
 mod limits;
 mod normal;
+mod obj;
 mod png;
 mod raster;
 mod raw;
@@ -23,6 +25,7 @@ mod tiff;
 
 pub use channel::Channel;
 pub use format::{INPUT_EXTENSIONS, default_format, default_parallax_format};
+pub use gltf::{LeftOut, Model, ModelReadOptions, ModelReport, Primitive};
 pub use raw::{RawKind, RawLayout};
 
 use crate::error::Result;

@@ -13,51 +13,54 @@ pub struct CornerAdjacency {
     corners: Vec<u32>,
 }
 
+/// Corners that one thread sorts in less time than it takes to wake others.
+const FEW: usize = 1 << 16;
+
+/// At most as many buckets are filled at a time: as many pages and cache lines are at hand.
+const BUCKETS: usize = 256;
+
+/// Buckets have 2^this vertices or more.
+const LEAST_SHIFT: u32 = 8;
+
 impl CornerAdjacency {
     /// The corners of each vertex of a mesh.
     pub fn of(mesh: &Mesh) -> Self {
         Self::of_vertices(mesh.triangles(), mesh.positions().len())
     }
 
-    /// The corners of each of `vertices` vertices, by a parallel counting sort: each thread has a range of the
-    /// vertices, reads all triangles and writes rows of its own.
+    /// The corners of each of `vertices` vertices, by a parallel counting sort.
+    ///
+    /// Threads first deal the corners of a part of the triangles each to buckets of neighbouring vertices, then put the
+    /// buckets' corners into rows. A bucket stays in a cache, so the order of the triangles matters little.
     ///
     /// # Panics
     /// If a triangle has a vertex that is not below `vertices`; [`crate::Mesh`] has checked that.
     pub(crate) fn of_vertices(triangles: &[[u32; 3]], vertices: usize) -> Self {
         let indices = triangles.as_flattened();
         let mut offsets = vec![0; vertices + 1];
-        let per_thread = vertices.div_ceil(rayon::current_num_threads()).max(1);
-
-        let counts = offsets[1..].par_chunks_mut(per_thread).enumerate();
-        counts.for_each(|(thread, counts)| {
-            for &vertex in indices {
-                if let Some(count) = counts.get_mut((vertex as usize).wrapping_sub(thread * per_thread)) {
-                    *count += 1;
-                }
-            }
-        });
-        for row in 0..vertices {
-            offsets[row + 1] += offsets[row];
-        }
-
         let mut corners = vec![0; indices.len()];
-        let mut rest = corners.as_mut_slice();
-        let mut rows = Vec::new();
-        for first in (0..vertices).step_by(per_thread) {
-            let ends = &offsets[first..vertices.min(first + per_thread) + 1];
-            let (own, others) = rest.split_at_mut((ends[ends.len() - 1] - ends[0]) as usize);
-            rows.push((first, ends, own));
-            rest = others;
+        if indices.len() <= FEW {
+            let entries = (0..).zip(indices).map(|(corner, &vertex)| (vertex, corner));
+            sort_into_rows(0, entries, 0, &mut offsets[1..], &mut corners);
+            return Self { offsets, corners };
         }
-        rows.into_par_iter().for_each(|(first, ends, own)| {
-            let mut next: Vec<u32> = ends[..ends.len() - 1].iter().map(|end| end - ends[0]).collect();
-            for (corner, &vertex) in (0..).zip(indices) {
-                if let Some(next) = next.get_mut((vertex as usize).wrapping_sub(first)) {
-                    own[*next as usize] = corner;
-                    *next += 1;
-                }
-            }
+
+        let shift = (LEAST_SHIFT..).find(|shift| vertices >> shift < BUCKETS).unwrap_or(u32::BITS);
+        let part_length = indices.len().div_ceil(4 * rayon::current_num_threads());
+        let parts = indices.par_chunks(part_length).enumerate();
+        let parts: Vec<Part> = parts.map(|(part, indices)| Part::of(part * part_length, indices, shift)).collect();
+
+        let mut buckets = Vec::new();
+        let (mut base, mut rest) = (0, corners.as_mut_slice());
+        for (bucket, ends) in offsets[1..].chunks_mut(1 << shift).enumerate() {
+            let (own, others) = rest.split_at_mut(parts.iter().map(|part| part.bucket(bucket).len()).sum());
+            let count = own.len() as u32;
+            buckets.push((bucket, base, ends, own));
+            (base, rest) = (base + count, others);
+        }
+        buckets.into_par_iter().for_each(|(bucket, base, ends, own)| {
+            let entries = parts.iter().flat_map(|part| part.bucket(bucket)).copied();
+            sort_into_rows((bucket as u32) << shift, entries, base, ends, own);
         });
         Self { offsets, corners }
     }
@@ -92,6 +95,59 @@ impl CornerAdjacency {
     }
 }
 
+/// Vertices and corners of a part of the triangles, by buckets of 2^shift vertices; ascending corners in each.
+struct Part {
+    offsets: Vec<usize>,
+    entries: Vec<(u32, u32)>,
+}
+
+impl Part {
+    /// Of the corners from `first`, whose vertices are `indices`.
+    fn of(first: usize, indices: &[u32], shift: u32) -> Self {
+        // The last one is for the end.
+        let mut offsets = vec![0; BUCKETS + 1];
+        indices.iter().for_each(|vertex| offsets[1 + (vertex >> shift) as usize] += 1);
+        for bucket in 0..BUCKETS {
+            offsets[bucket + 1] += offsets[bucket];
+        }
+        let mut next = offsets.clone();
+        let mut entries = vec![(0, 0); indices.len()];
+        for (corner, &vertex) in (first as u32..).zip(indices) {
+            let next = &mut next[(vertex >> shift) as usize];
+            entries[*next] = (vertex, corner);
+            *next += 1;
+        }
+        Self { offsets, entries }
+    }
+
+    fn bucket(&self, bucket: usize) -> &[(u32, u32)] {
+        &self.entries[self.offsets[bucket]..self.offsets[bucket + 1]]
+    }
+}
+
+/// Puts corners of the vertices from `first` into rows: where each ends, counted from `base`, and its corners.
+fn sort_into_rows(
+    first: u32,
+    entries: impl Iterator<Item = (u32, u32)> + Clone,
+    base: u32,
+    ends: &mut [u32],
+    corners: &mut [u32],
+) {
+    entries.clone().for_each(|(vertex, _)| ends[(vertex - first) as usize] += 1);
+    let mut end = 0;
+    let mut next = Vec::with_capacity(ends.len());
+    for row_end in ends {
+        next.push(end);
+        end += *row_end;
+        *row_end = base + end;
+    }
+    entries.for_each(|(vertex, corner)| {
+        let next = &mut next[(vertex - first) as usize];
+        corners[*next as usize] = corner;
+        *next += 1;
+    });
+}
+
 #[cfg(test)]
 mod tests {
     use super::CornerAdjacency;
@@ -106,16 +162,18 @@ mod tests {
 
     #[test]
     fn the_number_of_threads_changes_nothing() {
-        let scrambled = |n: u32| n.wrapping_mul(0x9e37_79b1) >> 16;
-        let triangles: Vec<[u32; 3]> =
-            (0..4000).map(|t| [3 * t, 3 * t + 1, 3 * t + 2].map(|n| scrambled(n) % 701)).collect();
-        let with = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| CornerAdjacency::of_vertices(&triangles, 701))
-        };
-        let one = with(1);
-        assert_eq!(one.corners().len(), 12000);
-        assert!((0..701).all(|row| one.row(row).is_sorted()));
-        assert_eq!([with(2), with(7), with(64)], [one.clone(), one.clone(), one]);
+        let scrambled = |n: u32| n.wrapping_mul(0x9e37_79b1) >> 8;
+        for vertices in [1, 255, 701, 70_001] {
+            let triangles: Vec<[u32; 3]> =
+                (0..40_000).map(|t| [3 * t, 3 * t + 1, 3 * t + 2].map(|n| scrambled(n) % vertices)).collect();
+            let mut expected = vec![Vec::new(); vertices as usize];
+            (0..).zip(triangles.as_flattened()).for_each(|(corner, &vertex)| expected[vertex as usize].push(corner));
+            for threads in [1, 2, 7, 64] {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                let adjacency = pool.install(|| CornerAdjacency::of_vertices(&triangles, vertices as usize));
+                let rows: Vec<&[u32]> = (0..adjacency.rows()).map(|row| adjacency.row(row)).collect();
+                assert!(rows == expected, "{vertices} vertices, {threads} threads");
+            }
+        }
     }
 }

@@ -6,7 +6,16 @@ use super::support::{Folder, bumps8};
 fn help_names_every_command_and_option() {
     let folder = Folder::new();
     let top = folder.run(&["--help"]).ends(0).stdout;
-    for word in ["normal", "parallax", "bake", "blend", "devices", "Exit status", "texbake bake textures --out baked"] {
+    for word in [
+        "normal",
+        "parallax",
+        "bake",
+        "blend",
+        "tangents",
+        "devices",
+        "Exit status",
+        "texbake bake textures --out baked",
+    ] {
         assert!(top.contains(word), "{word}");
     }
     let shared = [
@@ -82,7 +91,7 @@ fn written_lines_of_help_fit_the_usual_width() {
         let help = String::from_utf8(output.stdout).unwrap();
         help.split_once("--quiet").unwrap().1.to_owned()
     };
-    for command in ["normal", "parallax", "bake", "blend"] {
+    for command in ["normal", "parallax", "bake", "blend", "tangents"] {
         assert_eq!(text(command, "80"), text(command, "110"), "{command}");
     }
 }

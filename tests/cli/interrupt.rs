@@ -3,6 +3,7 @@
 #![cfg(unix)]
 
 use super::support::{Folder, Run, read_png};
+use super::tangents::{Model, sheet};
 use std::process::{Command, Output, Stdio};
 
 /// So many that no machine is done before the signal comes.
@@ -91,6 +92,28 @@ fn an_interrupted_blend_leaves_nothing() {
         return;
     }
     panic!("no run was interrupted");
+}
+
+#[test]
+fn an_interrupted_model_leaves_nothing() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("out")).unwrap();
+    // Many primitives of the same bytes, each of another accessor.
+    let mut model = Model::new().with("sheet", &sheet(200, 200), 0);
+    let first = model.json["meshes"][0]["primitives"][0].clone();
+    let texcoords = model.json["accessors"][first["attributes"]["TEXCOORD_0"].as_u64().unwrap() as usize].clone();
+    for _ in 0..400 {
+        let mut primitive = first.clone();
+        primitive["attributes"]["TEXCOORD_0"] = model.push("accessors", texcoords.clone()).into();
+        model.json["meshes"][0]["primitives"].as_array_mut().unwrap().push(primitive);
+    }
+    folder.file("model.glb", model.glb());
+    let command = folder.command(&["tangents", "model.glb", "-o", "out/m.glb", "--report", "r.json"]);
+    let run = Run::from(signalled(command, "-TERM", listens)).ends(130);
+    assert!(run.stderr.contains("interrupted: "), "{}", run.stderr);
+    assert!(run.stderr.ends_with("out/m.glb was not written\n"), "{}", run.stderr);
+    assert_eq!(folder.files("out"), [""; 0]);
+    assert_eq!(folder.json("r.json")["result"], "stopped");
 }
 
 #[test]

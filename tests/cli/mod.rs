@@ -14,3 +14,4 @@ mod parallax;
 mod report;
 mod settings;
 mod support;
+mod tangents;

@@ -12,6 +12,7 @@ mod parallax;
 mod real;
 mod rounding;
 mod slopes;
+mod tangents;
 mod texels;
 
 pub use blend::{blend, renormalised};
@@ -20,6 +21,7 @@ pub use integer::{image, ties};
 pub use parallax::{parallax, parallax_with_normals};
 pub use real::{RealNormal, real_normals};
 pub use slopes::slope_sums;
+pub use tangents::{TangentFormula, real_tangents};
 pub use texels::{UnormZero, components};
 
 use crate::support::Image;

@@ -1,9 +1,13 @@
-//! What every topic needs: the bakers under test, the comparison of codes, chance, and maps of chosen slopes.
+//! What every topic needs: the bakers under test, the comparison of codes and of tangents, chance, maps of chosen
+//! slopes, and meshes.
 
 mod bakers;
 mod boundaries;
 mod codes;
 mod compare;
+mod corners;
+mod meshes;
+mod mikktspace;
 mod pairs;
 mod random;
 
@@ -14,6 +18,14 @@ pub use bakers::{
 pub use boundaries::{convergent, factor_and_centre, rounded_by_f64};
 pub use codes::{dx, flat_map, landmarks, map_of_texels, normal_map, random_codes, xy};
 pub use compare::{Format, Image, assert_same, differences};
+pub use corners::{
+    Corner, angle, assert_same_tangents, corner_tangents, corners, direction, result_differences, tangent_differences,
+};
+pub use meshes::{
+    changed, cube, cylinder, cylinder_with_a_jump, degenerate_triangles, every_mesh, fan, flat_mesh, hills, mesh,
+    mirrored_halves, plane, pole, soup, sphere, torus, uneven, without_normals,
+};
+pub use mikktspace::{bevy_tangents, meshopt_tangents};
 pub use pairs::{every_difference_pair, greatest_sum, map_of_pairs};
 pub use random::Random;
 

@@ -8,11 +8,11 @@
 //! texels -> normals -> components -> codes -> texels    blend, and parallax with the normals of a map
 //! ```
 //!
+//! Meshes have passes of their own: see [`tangents`].
+//!
 //! Components of integer maps are estimates whose error is bounded. Where that bound leaves a code in doubt, integers
 //! decide.
 
-#[macro_use]
-mod vectorised;
 mod bake;
 mod blend;
 mod f16_bits;
@@ -25,6 +25,7 @@ mod reference;
 mod round;
 mod slopes;
 mod sums;
+mod tangents;
 #[cfg(test)]
 mod tests;
 
@@ -36,8 +37,9 @@ use crate::map::{CodesMut, CodesRef};
 use crate::ops::bake::BakePlan;
 use crate::ops::blend::BlendPlan;
 use crate::ops::parallax::ParallaxPlan;
-use crate::ops::tangents::{self, TangentPlan};
+use crate::ops::tangents::TangentPlan;
 use crate::stream::{CodeSink, HeightBands, LayerBand, LayerBands};
+use crate::vectorised;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
@@ -181,7 +183,10 @@ impl Backend for Cpu {
     }
 
     fn tangents(&self, plan: &TangentPlan<'_>, out: &mut [[f32; 4]]) -> Result<()> {
-        tangents::tangents_of_fans(plan, out);
+        match &self.own_threads {
+            Some(threads) if tangents::is_large(plan) => threads.install(|| tangents::tangents(plan, out)),
+            _ => tangents::tangents(plan, out),
+        }
         Ok(())
     }
 }

@@ -2,6 +2,7 @@
 
 mod fused;
 mod layers;
+mod tangents;
 
 use super::{Cpu, Reference};
 use crate::backend::{Backend, RowBytes};

@@ -1,6 +1,7 @@
 //! Which corners share a tangent.
 
-use super::{Surface, handedness};
+use super::pieces::of_pieces;
+use super::{Faces, Surface};
 use crate::mesh::CornerAdjacency;
 use std::borrow::Cow;
 
@@ -26,20 +27,18 @@ impl<'a> Fans<'a> {
     /// A fan for each vertex, and one more for each that has triangles of either handedness.
     ///
     /// The triangles without area in the texture go with those that are not mirrored: they contribute nothing.
-    pub fn by_handedness(surface: &Surface<'_>, adjacency: &'a CornerAdjacency) -> Self {
-        use rayon::prelude::*;
+    pub fn by_handedness(surface: &Surface<'_>, faces: &Faces, adjacency: &'a CornerAdjacency) -> Self {
         let vertices = adjacency.rows();
-        let signs: Vec<i8> = (0..surface.triangles.len())
-            .into_par_iter()
-            .map(|triangle| handedness(surface.texture_edges(triangle)))
-            .collect();
-        let is_negative = |corner: u32| signs[corner as usize / 3] < 0;
-        let is_mixed = |vertex: usize| {
-            let row = adjacency.row(vertex);
-            row.iter().any(|&corner| is_negative(corner)) && row.iter().any(|&corner| signs[corner as usize / 3] > 0)
+        let handedness = |corner: u32| faces.handedness[corner as usize / 3];
+        let is_negative = |corner: u32| handedness(corner) < 0;
+        let is_mixed = |&vertex: &u32| {
+            let row = adjacency.row(vertex as usize);
+            row.iter().any(|&corner| is_negative(corner)) && row.iter().any(|&corner| handedness(corner) > 0)
         };
-        let mixed: Vec<u32> =
-            (0..vertices as u32).into_par_iter().filter(|&vertex| is_mixed(vertex as usize)).collect();
+        let mixed_of_piece =
+            |first: usize, ends: &[u32]| -> Vec<u32> { (first as u32..).take(ends.len()).filter(is_mixed).collect() };
+        let mixed =
+            if faces.are_mixed() { of_pieces(&adjacency.offsets()[1..], mixed_of_piece).concat() } else { Vec::new() };
         if mixed.is_empty() {
             return Self { corners: Cow::Borrowed(adjacency), owners: None };
         }
@@ -60,15 +59,6 @@ impl<'a> Fans<'a> {
         }
         let corners = Cow::Owned(CornerAdjacency::from_rows(offsets, corners));
         Self { corners, owners: Some(Owners { vertices: owners, fans }) }
-    }
-
-    /// MikkTSpace's groups.
-    pub fn of_mikktspace(surface: &Surface<'_>) -> Self {
-        let vertices = surface.positions.len();
-        let adjacency = CornerAdjacency::of_vertices(surface.triangles, vertices);
-        let owners =
-            Owners { vertices: (0..vertices as u32).collect(), fans: surface.triangles.as_flattened().to_vec() };
-        Self { corners: Cow::Owned(adjacency), owners: Some(owners) }
     }
 
     /// How many fans there are.

@@ -1,9 +1,11 @@
 //! From the tangents of fans to those of vertices: directions for those that have none, seams, and splits.
 
+use super::pieces::{of_pieces, of_pieces_mut};
 use super::seams::weld_seams;
-use super::{Fans, Shading, TangentOptions, cross, is_zero, project, times, unit};
+use super::{Faces, Fans, Shading, TangentOptions, cross, is_zero, project, times, unit};
 use crate::map::Convention;
 use crate::mesh::Mesh;
+use std::borrow::Cow;
 
 /// Tangents of a mesh, whose vertices may have been split.
 ///
@@ -24,7 +26,7 @@ pub struct Tangents {
 }
 
 /// What was found in a mesh, counted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct TangentReport {
     /// Triangles of the mesh.
     pub triangles: usize,
@@ -85,21 +87,26 @@ impl Tangents {
 pub(crate) fn finish(
     mesh: &Mesh,
     shading: &Shading<'_>,
+    faces: &Faces,
     fans: &Fans<'_>,
     mut of_fans: Vec<[f32; 4]>,
     options: &TangentOptions,
 ) -> Tangents {
-    let is_directed: Vec<bool> = of_fans.iter().map(|&[x, y, z, _]| !is_zero([x, y, z])).collect();
-    for (fan, tangent) in of_fans.iter_mut().enumerate() {
-        let [x, y, z, w] = *tangent;
-        let [x, y, z] = if is_directed[fan] { [x, y, z] } else { across(shading.normals[fans.vertex(fan)]) };
-        // Green up is against v.
-        *tangent = [x, y, z, if options.convention == Convention::Gl { -w } else { w }];
-    }
+    let is_directed = of_pieces_mut(&mut of_fans, |first, tangents| {
+        let of_fan = |(fan, tangent): (usize, &mut [f32; 4])| {
+            let [x, y, z, w] = *tangent;
+            let is_directed = !is_zero([x, y, z]);
+            let [x, y, z] = if is_directed { [x, y, z] } else { across(shading.normals[fans.vertex(fan)]) };
+            *tangent = [x, y, z, sign_of_green(options.convention, w)];
+            is_directed
+        };
+        (first..).zip(tangents).map(of_fan).collect::<Vec<bool>>()
+    });
+    let is_directed = is_directed.concat();
     let mut vertices = if fans.owners.is_none() && !shading.has_own_vertices {
         Vertices::unsplit(mesh, shading, of_fans, is_directed)
     } else {
-        Vertices::split(mesh, shading, fans, &of_fans, &is_directed)
+        Vertices::split(mesh, shading, fans, &of_fans, &is_directed, options.convention)
     };
     let welded = options.weld_seams.map_or(0, |angle| weld_seams(mesh, &mut vertices, angle));
     let report = TangentReport {
@@ -108,16 +115,18 @@ pub(crate) fn finish(
         copies: vertices.copies.len(),
         mirrored: vertices.mirrored,
         unused: vertices.unused,
+        without_area: faces.counts.without_area,
+        without_texture_area: faces.counts.without_texture_area,
+        unwrapped: faces.counts.unwrapped,
         undirected: vertices.is_directed.iter().filter(|&&is_directed| !is_directed).count() - vertices.unused,
         normals_made: shading.made,
         normals_normalised: shading.normalised,
         welded,
-        ..TangentReport::default()
     };
     let has_own_normals = shading.made + shading.normalised == 0;
     Tangents {
         tangents: vertices.tangents,
-        normals: (!has_own_normals).then_some(vertices.normals),
+        normals: (!has_own_normals).then(|| vertices.normals.into_owned()),
         copies: vertices.copies,
         triangles: vertices.triangles,
         report,
@@ -125,9 +134,9 @@ pub(crate) fn finish(
 }
 
 /// Vertices with one normal and one tangent each: the mesh's own, then copies.
-pub(super) struct Vertices {
+pub(super) struct Vertices<'a> {
     pub tangents: Vec<[f32; 4]>,
-    pub normals: Vec<[f32; 3]>,
+    pub normals: Cow<'a, [[f32; 3]]>,
     /// Whether the tangent is more than any at a right angle to the normal.
     pub is_directed: Vec<bool>,
     /// The mesh's vertex that each copy is of.
@@ -143,9 +152,9 @@ pub(super) struct Vertices {
 /// No copy.
 const NONE: u32 = u32::MAX;
 
-impl Vertices {
+impl<'a> Vertices<'a> {
     /// Each fan is a vertex.
-    fn unsplit(mesh: &Mesh, shading: &Shading<'_>, tangents: Vec<[f32; 4]>, is_directed: Vec<bool>) -> Self {
+    fn unsplit(mesh: &Mesh, shading: &'a Shading<'_>, tangents: Vec<[f32; 4]>, is_directed: Vec<bool>) -> Self {
         let unused = if is_directed.iter().all(|&is_directed| is_directed) {
             0
         } else {
@@ -153,7 +162,7 @@ impl Vertices {
             mesh.triangles().as_flattened().iter().for_each(|&vertex| is_used[vertex as usize] = true);
             is_used.iter().filter(|&&is_used| !is_used).count()
         };
-        let normals = shading.normals.to_vec();
+        let normals = Cow::Borrowed(&*shading.normals);
         Self { tangents, normals, is_directed, copies: Vec::new(), triangles: None, mirrored: 0, unused }
     }
 
@@ -164,58 +173,97 @@ impl Vertices {
         fans: &Fans<'_>,
         of_fans: &[[f32; 4]],
         fan_is_directed: &[bool],
+        convention: Convention,
     ) -> Self {
-        let own = mesh.positions().len();
+        let indices = mesh.triangles().as_flattened();
+        let shaded = shading.mesh.triangles().as_flattened();
+        let fan = |corner: usize| fans.owners.as_ref().map_or(shaded[corner], |owners| owners.fans[corner]) as usize;
+        let normal = |corner: usize| shading.normals[shaded[corner] as usize];
+        let first = first_corners(indices, mesh.positions().len());
+        let of_vertices = of_pieces(&first, |vertex, first| {
+            let of_vertex = |(vertex, &first): (usize, &u32)| {
+                if first == NONE {
+                    let normal = if shading.has_own_vertices { [0.0, 0.0, 1.0] } else { shading.normals[vertex] };
+                    let [x, y, z] = across(normal);
+                    return (normal, [x, y, z, sign_of_green(convention, NO_SIGN)], false);
+                }
+                let fan = fan(first as usize);
+                (normal(first as usize), of_fans[fan], fan_is_directed[fan])
+            };
+            (vertex..).zip(first).map(of_vertex).collect::<Vec<_>>()
+        });
         let mut this = Self {
-            tangents: vec![[0.0; 4]; own],
-            normals: vec![[0.0; 3]; own],
-            is_directed: vec![false; own],
+            tangents: of_vertices.iter().flatten().map(|(_, tangent, _)| *tangent).collect(),
+            normals: of_vertices.iter().flatten().map(|(normal, ..)| *normal).collect(),
+            is_directed: of_vertices.iter().flatten().map(|(.., is_directed)| *is_directed).collect(),
             copies: Vec::new(),
             triangles: None,
             mirrored: 0,
-            unused: 0,
+            unused: first.iter().filter(|&&first| first == NONE).count(),
         };
-        let (mut is_used, mut is_mirrored) = (vec![false; own], vec![false; own]);
-        // The next copy of the same vertex.
-        let mut next = vec![NONE; own];
+
+        // Corners that do not have their vertex's normal and tangent: few.
+        let differ = of_pieces(indices, |corner, indices| {
+            let differs = |&(corner, &vertex): &(usize, &u32)| {
+                let first = first[vertex as usize] as usize;
+                let look = |corner: usize| (bits(normal(corner)), bits(of_fans[fan(corner)]));
+                (fan(corner), shaded[corner]) != (fan(first), shaded[first]) && look(corner) != look(first)
+            };
+            (corner..).zip(indices).filter(differs).map(|(corner, _)| corner).collect::<Vec<usize>>()
+        });
+        if differ.iter().all(Vec::is_empty) {
+            return this;
+        }
         let mut triangles = mesh.triangles().to_vec();
-        let shaded = shading.mesh.triangles().as_flattened();
-        for (corner, index) in triangles.as_flattened_mut().iter_mut().enumerate() {
-            let shaded = shaded[corner];
-            let fan = fans.owners.as_ref().map_or(shaded, |owners| owners.fans[corner]) as usize;
-            let (normal, tangent) = (shading.normals[shaded as usize], of_fans[fan]);
+        // The next copy of the same vertex.
+        let mut next = vec![NONE; first.len()];
+        let mut is_mirrored = vec![false; first.len()];
+        let normals = this.normals.to_mut();
+        for corner in differ.into_iter().flatten() {
+            let index = &mut triangles.as_flattened_mut()[corner];
+            let (normal, tangent) = (normal(corner), of_fans[fan(corner)]);
             let vertex = *index as usize;
-            if !is_used[vertex] {
-                is_used[vertex] = true;
-                (this.normals[vertex], this.tangents[vertex]) = (normal, tangent);
-                this.is_directed[vertex] = fan_is_directed[fan];
-                continue;
-            }
             let mut at = vertex;
-            while (bits(this.normals[at]), bits(this.tangents[at])) != (bits(normal), bits(tangent)) {
+            while (bits(normals[at]), bits(this.tangents[at])) != (bits(normal), bits(tangent)) {
                 if next[at] == NONE {
                     next[at] = this.tangents.len() as u32;
                     next.push(NONE);
-                    this.normals.push(normal);
+                    normals.push(normal);
                     this.tangents.push(tangent);
-                    this.is_directed.push(fan_is_directed[fan]);
+                    this.is_directed.push(fan_is_directed[fan(corner)]);
                     this.copies.push(*index);
                 }
                 at = next[at] as usize;
-                is_mirrored[vertex] |= this.tangents[vertex][3] != tangent[3];
+                // Where there is no direction, there is no handedness either.
+                let are_directed = this.is_directed[vertex] && fan_is_directed[fan(corner)];
+                is_mirrored[vertex] |= are_directed && this.tangents[vertex][3] != tangent[3];
             }
             *index = at as u32;
         }
-        for (vertex, _) in is_used.iter().enumerate().filter(|(_, is_used)| !**is_used) {
-            this.normals[vertex] = if shading.has_own_vertices { [0.0, 0.0, 1.0] } else { shading.normals[vertex] };
-            let [x, y, z] = across(this.normals[vertex]);
-            this.tangents[vertex] = [x, y, z, 1.0];
-            this.unused += 1;
-        }
         this.mirrored = is_mirrored.iter().filter(|&&is_mirrored| is_mirrored).count();
-        this.triangles = (!this.copies.is_empty()).then_some(triangles);
+        this.triangles = Some(triangles);
         this
     }
+}
+
+/// What w is, as to growing v, where nothing decides.
+const NO_SIGN: f32 = -1.0;
+
+/// The sign of the bitangent of a normal map, for the sign w of one along growing v: green up is against v.
+fn sign_of_green(convention: Convention, w: f32) -> f32 {
+    match convention {
+        Convention::Gl => -w,
+        Convention::Dx => w,
+    }
+}
+
+/// The first corner of each vertex, or [`NONE`].
+fn first_corners(indices: &[u32], vertices: usize) -> Vec<u32> {
+    let mut first = vec![NONE; vertices];
+    for (corner, &vertex) in indices.iter().enumerate().rev() {
+        first[vertex as usize] = corner as u32;
+    }
+    first
 }
 
 fn bits<const N: usize>(vector: [f32; N]) -> [u32; N] {

@@ -14,6 +14,14 @@ pub(crate) struct Frame {
     pub b: [f32; 3],
 }
 
+impl Frame {
+    /// The sum of the magnitudes of t's components.
+    #[inline(always)]
+    pub fn magnitude(&self) -> f32 {
+        (self.t[0].abs() + self.t[1].abs()) + self.t[2].abs()
+    }
+}
+
 /// The frame of a triangle. It is zero where the triangle has no direction.
 #[inline(always)]
 pub(crate) fn frame(method: TangentMethod, edges: &TriangleEdges) -> Frame {
@@ -24,7 +32,7 @@ pub(crate) fn frame(method: TangentMethod, edges: &TriangleEdges) -> Frame {
     }
 }
 
-/// FGED2 eq. 7.37. The inverse determinant stays below 2^104: see [`texture_edges`].
+/// FGED2 eq. 7.37. The inverse determinant stays below 2^64: see [`texture_edges`].
 #[inline(always)]
 fn lengyel_frame(edges: &TriangleEdges) -> Frame {
     let TriangleEdges { e1, e2, .. } = *edges;
@@ -82,13 +90,14 @@ pub(crate) fn handedness(texture: [[f32; 2]; 2]) -> i8 {
     i8::from(determinant > 0.0) - i8::from(determinant < 0.0)
 }
 
-/// Differences of texture coordinates, of which those below 2^-40 count as zero: 2^-60 of the greatest coordinate.
+/// Differences of texture coordinates, of which those below 2^-20 count as zero: 2^-40 of the greatest coordinate.
 ///
-/// Their products are then multiples of 2^-126, so a determinant that is not zero is at least that, or at least 2^-24
-/// of the products; and no frame is longer than 2^90.
+/// Products that are not zero are then at least 2^-40. If both products of a determinant are, it is zero or at least
+/// 2^-24 of the greater, so an inverse determinant is below 2^64, and y over it below 2^44; if one is zero, below
+/// 2^40 and 2^62. With edges below 2^22 no component of a frame exceeds 2^85, nor a sum of 2^32 of them 2^117.
 #[inline(always)]
 fn texture_edges([[x1, y1], [x2, y2]]: [[f32; 2]; 2]) -> [[f32; 2]; 2] {
-    let snapped = |difference| zero_below(2f32.powi(-40), difference);
+    let snapped = |difference| zero_below(2f32.powi(-20), difference);
     [[snapped(x1), snapped(y1)], [snapped(x2), snapped(y2)]]
 }
 
@@ -104,9 +113,9 @@ pub(crate) struct FrameSum {
 impl FrameSum {
     /// With one more triangle.
     #[inline(always)]
-    pub fn plus(self, Frame { t, b }: Frame) -> Self {
-        let magnitude = self.magnitude + ((t[0].abs() + t[1].abs()) + t[2].abs());
-        Self { t: add(self.t, t), b: add(self.b, b), magnitude }
+    pub fn plus(self, frame: Frame) -> Self {
+        let magnitude = self.magnitude + frame.magnitude();
+        Self { t: add(self.t, frame.t), b: add(self.b, frame.b), magnitude }
     }
 
     /// The tangent of a vertex with normal n, and the handedness (FGED2 eq. 7.38 and 7.40, listing 7.4); zero where
@@ -132,11 +141,16 @@ impl FrameSum {
 /// What a triangle adds at its corner at `p` to MikkTSpace's tangent of a vertex with normal n: its s in the tangent
 /// plane, weighted by the angle between the edges to the corners at `next` and `previous`.
 #[inline(always)]
-pub(crate) fn mikktspace_share(n: [f32; 3], s: [f32; 3], [p, next, previous]: [[f32; 3]; 3]) -> [f32; 3] {
+pub(crate) fn mikktspace_share(n: [f32; 3], s: [f32; 3], corner: [[f32; 3]; 3]) -> [f32; 3] {
+    times(acos(mikktspace_cosine(n, corner)), unit(project(n, s)))
+}
+
+/// The cosine of the angle in the tangent plane.
+#[inline(always)]
+pub(crate) fn mikktspace_cosine(n: [f32; 3], [p, next, previous]: [[f32; 3]; 3]) -> f32 {
     let a = unit(project(n, sub(next, p)));
     let b = unit(project(n, sub(previous, p)));
-    let angle = acos(dot(a, b).clamp(-1.0, 1.0));
-    times(angle, unit(project(n, s)))
+    dot(a, b).clamp(-1.0, 1.0)
 }
 
 /// v without its part along n.
@@ -151,14 +165,19 @@ pub(crate) fn project(n: [f32; 3], v: [f32; 3]) -> [f32; 3] {
 /// would, the bits are those of v times the inverse of its length.
 #[inline(always)]
 pub(crate) fn unit(v: [f32; 3]) -> [f32; 3] {
-    let greatest = (v[0].to_bits() & MAGNITUDE).max(v[1].to_bits() & MAGNITUDE).max(v[2].to_bits() & MAGNITUDE);
-    if greatest == 0 {
+    let v = scaled_to_one(v);
+    if is_zero(v) {
         return [0.0; 3];
     }
-    // 2^-e for a greatest component from 2^e to 2^(e + 1).
-    let factor = f32::from_bits((254 << 23) - (greatest & EXPONENT));
-    let v = times(factor, v);
     times(1.0 / dot(v, v).sqrt(), v)
+}
+
+/// v times a power of two that brings its greatest component from 1 to 2, or nearer to it if that is subnormal.
+#[inline(always)]
+pub(crate) fn scaled_to_one(v: [f32; 3]) -> [f32; 3] {
+    let greatest = (v[0].to_bits() & MAGNITUDE).max(v[1].to_bits() & MAGNITUDE).max(v[2].to_bits() & MAGNITUDE);
+    // 2^-e for a greatest component from 2^e to 2^(e + 1); 2^-126, the least that is no subnormal, for 2^127.
+    times(f32::from_bits(((254 << 23) - (greatest & EXPONENT)).max(1 << 23)), v)
 }
 
 const MAGNITUDE: u32 = 0x7fff_ffff;

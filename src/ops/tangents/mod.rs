@@ -7,15 +7,20 @@
 //! A fan is the set of corners that share a tangent. Which corners those are is decided once, on the CPU; what a
 //! backend computes is the arithmetic between the brackets.
 
+mod faces;
 mod fans;
 mod finish;
 mod formula;
+mod mikktspace;
 mod options;
+mod pieces;
 mod reference;
 mod seams;
 mod shading;
 mod surface;
+mod triangles;
 
+pub(crate) use faces::Faces;
 pub(crate) use fans::Fans;
 pub(crate) use finish::finish;
 pub use finish::{TangentReport, Tangents};
@@ -24,6 +29,7 @@ pub use options::{MissingNormals, TangentMethod, TangentOptions};
 pub(crate) use reference::tangents_of_fans;
 pub(crate) use shading::Shading;
 pub(crate) use surface::{Surface, TriangleEdges};
+pub(crate) use triangles::{BLOCK, Plane, Triangles};
 
 use super::Precision;
 
@@ -31,6 +37,7 @@ use super::Precision;
 #[derive(Debug)]
 pub(crate) struct TangentPlan<'a> {
     pub method: TangentMethod,
+    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "the CPU is fast and exact"))]
     pub precision: Precision,
     pub surface: &'a Surface<'a>,
     pub fans: &'a Fans<'a>,

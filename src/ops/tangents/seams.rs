@@ -1,13 +1,13 @@
 //! Duplicates at one position whose tangents are nearly equal become equal (FGED2, end of section 7.5).
 
 use super::finish::Vertices;
-use super::{add, dot, project, unit};
+use super::{add, dot, project, sub, unit};
 use crate::mesh::Mesh;
 use std::collections::HashMap;
 
 /// Averages the tangents of vertices that have position, normal and handedness in common and lie at most `degrees`
 /// from the first of them that has not been averaged. Tells how many vertices have another tangent now.
-pub(super) fn weld_seams(mesh: &Mesh, vertices: &mut Vertices, degrees: f32) -> usize {
+pub(super) fn weld_seams(mesh: &Mesh, vertices: &mut Vertices<'_>, degrees: f32) -> usize {
     let own = mesh.positions().len();
     // Minus zero is zero.
     let bits = |v: [f32; 3]| v.map(|part| (part + 0.0).to_bits());
@@ -19,7 +19,9 @@ pub(super) fn weld_seams(mesh: &Mesh, vertices: &mut Vertices, degrees: f32) -> 
         places.entry(place).or_default().push(vertex);
     }
 
-    let least = libm::cosf(degrees.to_radians());
+    // The square of the chord: near an angle of zero, where cosines are all 1, it is as precise as anywhere.
+    let chord = 2.0 * libm::sinf(0.5 * degrees.to_radians());
+    let greatest = chord * chord;
     let mut welded = 0;
     for mut rest in places.into_values().filter(|vertices| vertices.len() > 1) {
         while let [first, ..] = rest[..] {
@@ -27,7 +29,10 @@ pub(super) fn weld_seams(mesh: &Mesh, vertices: &mut Vertices, degrees: f32) -> 
                 let [x, y, z, _] = vertices.tangents[vertex];
                 [x, y, z]
             };
-            let is_near = |&vertex: &usize| vertex == first || dot(direction(first), direction(vertex)) >= least;
+            let is_near = |&vertex: &usize| {
+                let apart = sub(direction(first), direction(vertex));
+                dot(apart, apart) <= greatest
+            };
             let (near, far): (Vec<usize>, Vec<usize>) = rest.iter().partition(|vertex| is_near(vertex));
             let sum = near.iter().fold([0.0; 3], |sum, &vertex| add(sum, direction(vertex)));
             let [x, y, z] = unit(project(vertices.normals[first], sum));

@@ -1,5 +1,6 @@
 //! A normal for every vertex, where a mesh has none or none of use.
 
+use super::pieces::of_pieces;
 use super::surface::scale;
 use super::{MissingNormals, add, cross, dot, is_zero, sub, times, unit};
 use crate::mesh::{CornerAdjacency, Mesh};
@@ -36,7 +37,7 @@ impl<'a> Shading<'a> {
             normalised,
         };
         match (mesh.normals(), missing) {
-            (Some(normals), _) if normals.iter().all(|&n| is_unit(n)) => given(normals.into(), 0, 0),
+            (Some(normals), _) if are_unit(normals) => given(normals.into(), 0, 0),
             (Some(normals), _) => {
                 let (repaired, made, normalised) = repaired(mesh, normals);
                 given(repaired.into(), made, normalised)
@@ -97,13 +98,20 @@ fn area_normal(mesh: &Mesh, scale: f32, triangle: usize) -> [f32; 3] {
     cross(sub(b, a), sub(c, a))
 }
 
+fn are_unit(normals: &[[f32; 3]]) -> bool {
+    // Counting is faster than stopping at the first.
+    let others = |_, normals: &[[f32; 3]]| normals.iter().fold(0, |others, &n| others + u32::from(!is_unit(n)));
+    of_pieces(normals, others).into_iter().all(|others| others == 0)
+}
+
 fn is_unit(n: [f32; 3]) -> bool {
     let range =
         (1.0 - LENGTH_TOLERANCE) * (1.0 - LENGTH_TOLERANCE)..=(1.0 + LENGTH_TOLERANCE) * (1.0 + LENGTH_TOLERANCE);
     range.contains(&dot(n, n))
 }
 
-/// A unit vector; (0, 0, 1) for zero, which a vertex without area around it has.
+/// A unit vector; (0, 0, 1) for zero, which a vertex without area around it has. Minus zero is zero, so that triangles
+/// in one plane have one normal.
 fn unit_or_up(v: [f32; 3]) -> [f32; 3] {
-    if is_zero(v) { [0.0, 0.0, 1.0] } else { unit(v) }
+    if is_zero(v) { [0.0, 0.0, 1.0] } else { unit(v).map(|part| part + 0.0) }
 }

@@ -1,6 +1,7 @@
 //! A mesh as the formulas see it: at one scale, with a normal for every vertex.
 
-use super::sub;
+use super::pieces::of_pieces;
+use super::{sub, times};
 use crate::mesh::Mesh;
 
 /// A mesh at a scale of which no formula overflows.
@@ -48,8 +49,7 @@ impl<'a> Surface<'a> {
     /// A vertex's position, scaled.
     #[inline(always)]
     pub fn position(&self, vertex: u32) -> [f32; 3] {
-        let [x, y, z] = self.positions[vertex as usize];
-        [x * self.position_scale, y * self.position_scale, z * self.position_scale]
+        times(self.position_scale, self.positions[vertex as usize])
     }
 
     /// Scaled positions of a corner, of the next one of its triangle and of the one before.
@@ -66,21 +66,37 @@ impl<'a> Surface<'a> {
     /// The edges of a triangle, scaled.
     #[inline(always)]
     pub fn edges(&self, triangle: usize) -> TriangleEdges {
-        let [p0, p1, p2] = self.triangles[triangle].map(|vertex| self.position(vertex));
-        let [d1, d2] = self.texture_edges(triangle);
+        let vertices = self.triangles[triangle];
+        let positions = vertices.map(|vertex| self.positions[vertex as usize]);
+        let texcoords = vertices.map(|vertex| self.texcoords[vertex as usize]);
+        self.edges_between(positions, texcoords)
+    }
+
+    /// The edges of a triangle with these positions and texture coordinates, which are the mesh's.
+    #[inline(always)]
+    pub fn edges_between(&self, [p0, p1, p2]: [[f32; 3]; 3], texcoords: [[f32; 2]; 3]) -> TriangleEdges {
+        let scale = self.position_scale;
+        let (p0, p1, p2) = (times(scale, p0), times(scale, p1), times(scale, p2));
+        let [d1, d2] = self.texture_edges_between(texcoords);
         TriangleEdges { e1: sub(p1, p0), e2: sub(p2, p0), d1, d2 }
     }
 
     /// (x1, y1) and (x2, y2) of a triangle, scaled and, if asked for, unwrapped.
     #[inline(always)]
     pub fn texture_edges(&self, triangle: usize) -> [[f32; 2]; 2] {
+        let [a, b, c] = self.triangles[triangle];
+        let texcoord = |vertex: u32| self.texcoords[vertex as usize];
+        self.texture_edges_between([texcoord(a), texcoord(b), texcoord(c)])
+    }
+
+    #[inline(always)]
+    fn texture_edges_between(&self, [a, b, c]: [[f32; 2]; 3]) -> [[f32; 2]; 2] {
         let scale = self.texcoord_scale;
-        let [a, b, c] = self.triangles[triangle].map(|vertex| {
-            let [u, v] = self.texcoords[vertex as usize];
-            [u * scale, v * scale]
-        });
-        let difference = |to: [f32; 2], from: [f32; 2]| [self.wrapped(to[0] - from[0]), self.wrapped(to[1] - from[1])];
-        [difference(b, a), difference(c, a)]
+        let [u, v] = [a[0] * scale, a[1] * scale];
+        [
+            [self.wrapped(b[0] * scale - u), self.wrapped(b[1] * scale - v)],
+            [self.wrapped(c[0] * scale - u), self.wrapped(c[1] * scale - v)],
+        ]
     }
 
     /// A difference of texture coordinates across the shorter way round, if that is asked for.
@@ -97,8 +113,10 @@ impl<'a> Surface<'a> {
 
 /// The power of two that brings the greatest magnitude between 2^20 and 2^21.
 pub(super) fn scale<const N: usize>(vectors: &[[f32; N]]) -> f32 {
-    let greatest = vectors.as_flattened().iter().fold(0.0, |greatest: f32, value| greatest.max(value.abs()));
-    let exponent = (greatest.to_bits() >> 23) as i32 - 127;
+    // Magnitudes are in the order of their bits.
+    let greatest = |values: &[f32]| values.iter().fold(0, |greatest, value| value.abs().to_bits().max(greatest));
+    let greatest = of_pieces(vectors, |_, vectors| greatest(vectors.as_flattened())).into_iter().max().unwrap_or(0);
+    let exponent = (greatest >> 23) as i32 - 127;
     2f32.powi((20 - exponent).min(126))
 }
 

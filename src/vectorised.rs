@@ -12,7 +12,7 @@ macro_rules! vectorised {
 
 vectorised! {
     /// The instruction set that the loops run with.
-    pub(super) fn instruction_set() -> &'static str {
+    pub(crate) fn instruction_set() -> &'static str {
         multiversion::target::match_target! {
             "x86_64+avx512f" => "avx512",
             "x86_64+avx2" => "avx2",

@@ -1,0 +1,259 @@
+//! Models: what users read, give tangents and write.
+
+use super::document::{Document, index};
+use super::edit::{Edited, Made};
+use super::elements::Elements;
+use super::select::{Geometry, Place, Selection, name, named};
+use super::write::ModelFormat;
+use super::{container, write};
+use crate::error::{Error, Result};
+use crate::io::{MAX_BYTES, obj};
+use crate::mesh::Mesh;
+use crate::ops::tangents::Tangents;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// How a file becomes a model.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ModelReadOptions {
+    /// Whether primitives without a normal map get tangents too, for their first texture coordinates (TEXCOORD_0).
+    /// Primitives of an OBJ always do.
+    pub all: bool,
+    /// The most bytes that the file and its buffers may take together, and one attribute of it when it is unpacked.
+    pub max_bytes: u64,
+}
+
+impl Default for ModelReadOptions {
+    fn default() -> Self {
+        Self { all: false, max_bytes: MAX_BYTES }
+    }
+}
+
+/// A .glb, .gltf or .obj file whose meshes get tangents.
+///
+/// Everything else in it stays as it was, extensions and extras that texbake does not know included. Bytes of buffers
+/// keep their place; accessors that something else uses are not changed.
+///
+/// ```no_run
+/// use texbake::{Baker, TangentOptions, io::Model};
+///
+/// let mut model = Model::read("helmet.glb")?;
+/// for primitive in 0..model.primitives().len() {
+///     let mesh = model.mesh(primitive)?;
+///     model.set_tangents(primitive, Baker::auto().tangents(&mesh, &TangentOptions::default())?)?;
+/// }
+/// model.write("helmet_t.glb")?;
+/// # Ok::<(), texbake::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct Model {
+    document: Document,
+    geometries: Vec<(Geometry, Vec<Place>)>,
+    primitives: Vec<Primitive>,
+    left_out: Vec<LeftOut>,
+    warnings: Vec<String>,
+    made: BTreeMap<usize, Made>,
+}
+
+/// A primitive that needs tangents.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Primitive {
+    /// Its mesh and its number there, from 0.
+    pub name: String,
+    /// How many primitives of the file have these vertices, texture coordinates and triangles, and share the result.
+    /// Nodes that share a mesh count once.
+    pub shared_by: usize,
+}
+
+/// A primitive that gets no tangents.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LeftOut {
+    /// Its mesh and its number there, from 0.
+    pub name: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// What a file holds, counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ModelReport {
+    /// Primitives that need tangents, and are not the same as another.
+    pub primitives: usize,
+    /// Primitives that are the same as one of them, and share its tangents.
+    pub shared: usize,
+    /// Primitives that get no tangents.
+    pub left_out: usize,
+}
+
+impl Model {
+    /// Reads a model with the default [`ModelReadOptions`].
+    ///
+    /// # Errors
+    /// As [`Model::read_with`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        Self::read_with(path, &ModelReadOptions::default())
+    }
+
+    /// Reads a model: .glb, .gltf with buffers beside it or in data URIs, or .obj.
+    ///
+    /// Tangents are needed by primitives with a position, and with the texture coordinates that the normal map of
+    /// their material uses, as its KHR_texture_transform says; without a normal map, those of the normal map of its
+    /// clearcoat or of its anisotropy; without a material that has one, those of the first of its variants that has.
+    ///
+    /// # Errors
+    /// [`Error::File`] for a file that is damaged, larger than [`ModelReadOptions::max_bytes`], not glTF 2.0 or OBJ,
+    /// or has a primitive of which an extension that texbake does not read holds the vertices (Draco, meshopt);
+    /// [`Error::Io`].
+    pub fn read_with(path: impl AsRef<Path>, options: &ModelReadOptions) -> Result<Self> {
+        let path = path.as_ref();
+        let is_obj = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"));
+        let document = match is_obj {
+            true => obj::read(path, options.max_bytes)?,
+            false => container::read(path, options.max_bytes)?,
+        };
+        let Selection { geometries, left_out } = Selection::of(&document, options.all || is_obj)?;
+        let primitives = geometries
+            .iter()
+            .map(|(_, places)| Primitive { name: name(&document, places[0]), shared_by: places.len() })
+            .collect();
+        let left_out =
+            left_out.into_iter().map(|(place, reason)| LeftOut { name: name(&document, place), reason }).collect();
+        let warnings = geometries
+            .iter()
+            .flat_map(|(_, places)| places)
+            .filter(|place| has_morph_tangents(&document, **place))
+            .map(|&place| {
+                let name = name(&document, place);
+                format!("{name}: the tangents of its morph targets are dropped, for they were made for other tangents")
+            })
+            .collect();
+        Ok(Self { document, geometries, primitives, left_out, warnings, made: BTreeMap::new() })
+    }
+
+    /// The primitives that need tangents, in the order of the file. Those that are the same are listed once.
+    pub fn primitives(&self) -> &[Primitive] {
+        &self.primitives
+    }
+
+    /// The primitives that get no tangents.
+    pub fn left_out(&self) -> &[LeftOut] {
+        &self.left_out
+    }
+
+    /// What the user should know about the file.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// What was read, counted.
+    pub fn report(&self) -> ModelReport {
+        let all: usize = self.primitives.iter().map(|primitive| primitive.shared_by).sum();
+        ModelReport {
+            primitives: self.primitives.len(),
+            shared: all - self.primitives.len(),
+            left_out: self.left_out.len(),
+        }
+    }
+
+    /// The mesh of a primitive, by its number in [`Model::primitives`], with positions as they are stored: no node
+    /// has moved them, and quantised ones are not scaled. Strips and fans are triangles.
+    ///
+    /// # Errors
+    /// [`Error::File`] names the primitive, and what its accessors have that a [`Mesh`] cannot;
+    /// [`Error::Parameter`] if there is no such primitive.
+    pub fn mesh(&self, primitive: usize) -> Result<Mesh> {
+        let (geometry, places) = self.geometry(primitive)?;
+        geometry.mesh(&self.document).map_err(|error| named(&self.document, places[0], error))
+    }
+
+    /// Gives a primitive, and those that are the same, the tangents that its mesh has got; they are put into the file
+    /// by [`Model::write`].
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there is no such primitive, or the tangents are not those of its mesh.
+    pub fn set_tangents(&mut self, primitive: usize, tangents: Tangents) -> Result<()> {
+        let (geometry, places) = self.geometry(primitive)?;
+        let vertices = Elements::count(&self.document, geometry.position)
+            .map_err(|error| named(&self.document, places[0], error))?;
+        check(&tangents, vertices)?;
+        self.made.insert(primitive, Made { tangents, bitangents: None });
+        Ok(())
+    }
+
+    /// Gives a primitive that has got tangents the bitangents of the same vertices ([`Tangents::bitangents`]), as the
+    /// attribute `_BITANGENT`. No reader needs them: the sign in a tangent's w and the normal rebuild them.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if the primitive has got no tangents, or more or fewer.
+    pub fn set_bitangents(&mut self, primitive: usize, bitangents: Vec<[f32; 3]>) -> Result<()> {
+        let made = self.made.get_mut(&primitive).ok_or_else(|| {
+            Error::parameter("primitive", primitive, "one that has got tangents, which come before bitangents")
+        })?;
+        let (count, wanted) = (bitangents.len(), made.tangents.tangents.len());
+        if count != wanted {
+            return Err(Error::parameter("number of bitangents", count, format!("{wanted}, one for each tangent")));
+        }
+        made.bitangents = Some(bitangents);
+        Ok(())
+    }
+
+    /// Fails if a model cannot be called `path`; nothing is looked up or created.
+    ///
+    /// # Errors
+    /// [`Error::File`] for another extension than .glb and .gltf.
+    pub fn check_output(path: &Path) -> Result<()> {
+        ModelFormat::of(path).map(drop)
+    }
+
+    /// Writes the model as .glb or .gltf, by the extension.
+    ///
+    /// A .gltf made of a .glb or an OBJ has its buffer beside it (`name.bin`); one made of a .gltf has the new data in
+    /// `name_tangents.bin` beside it, or in a data URI if all its buffers are. In another folder than the one it was
+    /// read from, the files that the model refers to are copied beside it. Each file appears when it is complete, the
+    /// model last.
+    ///
+    /// # Errors
+    /// [`Error::File`] if the extension is another, a file that the model refers to is not below its folder, or an
+    /// attribute of a split vertex cannot be copied; [`Error::Io`].
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<()> {
+        let path = path.as_ref();
+        ModelFormat::of(path)?;
+        let mut edited = Edited::new(&self.document);
+        for (&primitive, made) in &self.made {
+            let (geometry, places) = &self.geometries[primitive];
+            edited.apply(geometry, places, made).map_err(|error| named(&self.document, places[0], error))?;
+        }
+        write::write(&self.document, edited, path)
+    }
+
+    fn geometry(&self, primitive: usize) -> Result<&(Geometry, Vec<Place>)> {
+        let missing = || Error::parameter("primitive", primitive, format!("below {}", self.geometries.len()));
+        self.geometries.get(primitive).ok_or_else(missing)
+    }
+}
+
+fn has_morph_tangents(document: &Document, (mesh, number): Place) -> bool {
+    let primitive = &document.list("meshes")[mesh]["primitives"][number];
+    let targets = primitive["targets"].as_array().map_or(&[][..], Vec::as_slice);
+    targets.iter().any(|target: &Value| index(target, "TANGENT").is_some())
+}
+
+/// Fails if tangents are not of a mesh with so many vertices.
+fn check(tangents: &Tangents, vertices: usize) -> Result<()> {
+    let count = tangents.tangents.len();
+    if count != vertices + tangents.copies.len() {
+        return Err(Error::parameter("number of tangents", count, format!("{vertices} and one for each copy")));
+    }
+    if let Some(normals) = tangents.normals.as_ref().filter(|normals| normals.len() != count) {
+        return Err(Error::parameter("number of normals", normals.len(), format!("{count}, one for each tangent")));
+    }
+    if let Some(copy) = tangents.copies.iter().find(|copy| **copy as usize >= vertices) {
+        return Err(Error::parameter("source of a copy", copy, format!("below {vertices}")));
+    }
+    let mut used = tangents.triangles.iter().flat_map(|triangles| triangles.as_flattened());
+    match used.find(|vertex| **vertex as usize >= count) {
+        Some(vertex) => Err(Error::parameter("index", vertex, format!("below {count}, the number of tangents"))),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,308 @@
+//! Documents as files: .glb, or .gltf with its buffers and images beside it.
+
+use super::container::{BIN, JSON, MAGIC, outside};
+use super::document::{Document, Origin, index};
+use super::edit::Edited;
+use super::uri::{self, Uri, file_of};
+use crate::error::{Error, Result};
+use crate::io::replace::Replacement;
+use serde_json::{Value, json};
+use std::borrow::Cow;
+use std::collections::{BTreeSet, HashSet};
+use std::ffi::OsStr;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// Where the parts of a merged buffer begin: as much as any extension asks for.
+const PART_ALIGNMENT: usize = 8;
+
+/// A format that models are written in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ModelFormat {
+    Glb,
+    Gltf,
+}
+
+/// Bytes one after the other.
+type Parts<'a> = Vec<Cow<'a, [u8]>>;
+
+/// A file to be.
+struct NewFile<'a> {
+    path: PathBuf,
+    parts: Parts<'a>,
+}
+
+impl ModelFormat {
+    /// By the extension of the file to be.
+    pub fn of(path: &Path) -> Result<Self> {
+        match path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase).as_deref() {
+            Some("glb") => Ok(Self::Glb),
+            Some("gltf") => Ok(Self::Gltf),
+            _ => Err(Error::file(
+                path,
+                "models are written as glTF",
+                "give it the extension .glb or .gltf, or end the name of a folder in /",
+            )),
+        }
+    }
+}
+
+/// Writes a model and, unless it stays in its folder, the files it refers to; the model itself comes last, so that
+/// it never refers to what is not yet there.
+pub(super) fn write(document: &Document, mut edited: Edited<'_>, path: &Path) -> Result<()> {
+    let mut files = Vec::new();
+    let added = std::mem::take(&mut edited.added);
+    let model = match ModelFormat::of(path)? {
+        ModelFormat::Glb => {
+            let bin = join_buffers(document, &mut edited, added);
+            glb(document, path, &edited.json, bin)?
+        }
+        ModelFormat::Gltf => {
+            files.extend(buffer_file(document, &mut edited, added, path));
+            vec![serde_json::to_vec_pretty(&edited.json).expect("keys are strings").into()]
+        }
+    };
+    if !is_same_folder(&document.path, path) {
+        copied_files(document, &edited.json, path, &mut files)?;
+    }
+    files.push(NewFile { path: path.into(), parts: model });
+    let ready = files.into_iter().map(NewFile::write).collect::<Result<Vec<_>>>()?;
+    ready.into_iter().try_for_each(Replacement::commit)
+}
+
+impl NewFile<'_> {
+    fn write(self) -> Result<Replacement> {
+        let replacement = Replacement::create(&self.path)?;
+        let mut output = BufWriter::new(replacement.output()?);
+        let written = self.parts.iter().try_for_each(|part| output.write_all(part)).and_then(|()| output.flush());
+        replacement.check()?;
+        written.map_err(Error::io(&self.path))?;
+        drop(output);
+        Ok(replacement)
+    }
+}
+
+/// Makes all buffers one, with what was added at its end. Those that extensions fill follow it.
+fn join_buffers<'a>(document: &'a Document, edited: &mut Edited<'_>, added: Vec<u8>) -> Parts<'a> {
+    let mut parts = Parts::new();
+    let mut end = 0;
+    let mut append = |bytes: Cow<'a, [u8]>, alignment: usize| {
+        let begin = usize::next_multiple_of(end, alignment);
+        parts.push(vec![0; begin - end].into());
+        end = begin + bytes.len();
+        parts.push(bytes);
+        begin
+    };
+
+    let is_binary = document.buffers.first().is_some_and(|buffer| buffer.origin == Origin::Inside);
+    let joined = if is_binary { 1 } else { document.buffers.len() };
+    let mut buffers = vec![json!({})];
+    let mut places = Vec::new();
+    for (number, buffer) in document.buffers.iter().enumerate() {
+        let mut object = document.list("buffers")[number].clone();
+        if number >= joined || buffer.origin == Origin::Nowhere {
+            places.push((buffers.len(), 0));
+            buffers.push(object);
+            continue;
+        }
+        places.push((0, append(buffer.bytes.as_slice().into(), PART_ALIGNMENT)));
+        if number == 0 {
+            object.as_object_mut().map(|fields| fields.shift_remove("uri"));
+            buffers[0] = object;
+        }
+    }
+    if !is_binary {
+        move_views(&mut edited.json, &places);
+    }
+    if !added.is_empty() {
+        let begin = append(added.into(), 4);
+        place_added(edited, 0, begin);
+    }
+    if end > 0 || buffers.len() > 1 {
+        if !(is_binary && edited.added_views.is_empty()) {
+            buffers[0]["byteLength"] = end.into();
+        }
+        edited.json["buffers"] = buffers.into();
+    }
+    parts
+}
+
+/// Gives buffer views the buffers and the offsets that theirs moved to.
+fn move_views(json: &mut Value, places: &[(usize, usize)]) {
+    for view in json["bufferViews"].as_array_mut().into_iter().flatten() {
+        move_view(view, places);
+        // Compressed data has a place of its own.
+        for name in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
+            if let Some(extension) = view["extensions"].get_mut(name) {
+                move_view(extension, places);
+            }
+        }
+    }
+}
+
+fn move_view(view: &mut Value, places: &[(usize, usize)]) {
+    let place = index(view, "buffer").and_then(|buffer| places.get(buffer));
+    if let Some(&(buffer, begin)) = place {
+        view["buffer"] = buffer.into();
+        if begin > 0 {
+            view["byteOffset"] = (view["byteOffset"].as_u64().unwrap_or(0) + begin as u64).into();
+        }
+    }
+}
+
+/// Gives the new buffer views their buffer, in which what was added begins at `begin`.
+fn place_added(edited: &mut Edited<'_>, buffer: usize, begin: usize) {
+    for &view in &edited.added_views {
+        let view = &mut edited.json["bufferViews"][view];
+        view["buffer"] = buffer.into();
+        view["byteOffset"] = (index(view, "byteOffset").unwrap_or(0) + begin).into();
+    }
+}
+
+/// A .glb (glTF 2.0, section 4.4).
+fn glb<'a>(document: &'a Document, path: &Path, json: &Value, bin: Parts<'a>) -> Result<Parts<'a>> {
+    let json = serde_json::to_vec(json).expect("keys are strings");
+    let bin_length: usize = bin.iter().map(|part| part.len()).sum();
+    let chunk = |length: usize| if length == 0 { 0 } else { 8 + length.next_multiple_of(4) };
+    let length = 12 + chunk(json.len()) + chunk(bin_length) + document.more_chunks.len();
+    let Ok(length) = u32::try_from(length) else {
+        let reason = format!("it would have {length} bytes, and a .glb has less than 4 GiB");
+        return Err(Error::file(path, reason, "write .gltf"));
+    };
+    let word = |number: usize| (number as u32).to_le_bytes();
+    let header = |length: usize, type_: &[u8; 4]| [word(length.next_multiple_of(4)), *type_].concat();
+    let padding = |length: usize, byte: u8| vec![byte; length.next_multiple_of(4) - length].into();
+
+    let mut parts: Parts<'a> = vec![[*MAGIC, word(2), length.to_le_bytes()].concat().into()];
+    parts.push(header(json.len(), JSON).into());
+    let json_padding = padding(json.len(), b' ');
+    parts.extend([json.into(), json_padding]);
+    if bin_length > 0 {
+        parts.push(header(bin_length, BIN).into());
+        parts.extend(bin);
+        parts.push(padding(bin_length, 0));
+    }
+    parts.push(document.more_chunks.as_slice().into());
+    Ok(parts)
+}
+
+/// The file beside a .gltf for what was in the model file and what was added, if that is not in the document itself.
+fn buffer_file<'a>(
+    document: &'a Document,
+    edited: &mut Edited<'_>,
+    added: Vec<u8>,
+    path: &Path,
+) -> Option<NewFile<'a>> {
+    if let Some(inside) = document.buffers.first().filter(|buffer| buffer.origin == Origin::Inside) {
+        let begin = inside.bytes.len().next_multiple_of(4);
+        let gap = vec![0; begin - inside.bytes.len()];
+        let buffer = &mut edited.json["buffers"][0];
+        if !added.is_empty() {
+            buffer["byteLength"] = (begin + added.len()).into();
+        }
+        let name = free_name(document, path, "", None);
+        edited.json["buffers"][0]["uri"] = uri::of_path(&name).into();
+        place_added(edited, 0, begin);
+        let mut parts: Parts<'a> = vec![inside.bytes.as_slice().into()];
+        if !added.is_empty() {
+            parts.extend([gap.into(), added.into()]);
+        }
+        return Some(NewFile { path: path.with_file_name(name), parts });
+    }
+    if added.is_empty() {
+        return None;
+    }
+    // The tangents of an earlier run, say, which nothing uses any more.
+    let added_views: HashSet<usize> = edited.added_views.iter().copied().collect();
+    let views = edited.json["bufferViews"].as_array().into_iter().flatten().enumerate();
+    let kept = views.filter(|(view, _)| !added_views.contains(view)).map(|(_, view)| view);
+    let used: HashSet<usize> = kept.flat_map(buffers_of).collect();
+    let once_used: BTreeSet<usize> = document.list("bufferViews").iter().flat_map(buffers_of).collect();
+    let free = once_used.into_iter().find(|number| *number < document.buffers.len() && !used.contains(number));
+    let has_files = document.buffers.iter().any(|buffer| buffer.origin == Origin::File);
+    let name = has_files.then(|| free_name(document, path, "_tangents", free));
+    let uri = name.as_ref().map_or_else(|| uri::data_uri(&added), |name| uri::of_path(name));
+    let buffer = json!({ "uri": uri, "byteLength": added.len() });
+    if edited.json["buffers"].is_null() {
+        edited.json["buffers"] = json!([]);
+    }
+    let buffers = edited.json["buffers"].as_array_mut().expect("it was read");
+    let number = free.unwrap_or(buffers.len());
+    match buffers.get_mut(number) {
+        Some(old) => *old = buffer,
+        None => buffers.push(buffer),
+    }
+    place_added(edited, number, 0);
+    name.map(|name| NewFile { path: path.with_file_name(name), parts: vec![added.into()] })
+}
+
+/// The buffers that a buffer view, and its compression, lie in.
+fn buffers_of(view: &Value) -> impl Iterator<Item = usize> {
+    let extensions = view["extensions"].as_object().into_iter().flat_map(|extensions| extensions.values());
+    std::iter::once(view).chain(extensions).filter_map(|object| index(object, "buffer"))
+}
+
+/// The name of a buffer's file, after the model's: none that the document, but for one buffer, uses.
+fn free_name(document: &Document, path: &Path, suffix: &str, without: Option<usize>) -> String {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let buffers = document.list("buffers").iter().enumerate();
+    let buffers = buffers.filter(|(number, _)| Some(*number) != without).map(|(_, buffer)| buffer);
+    let used: Vec<PathBuf> = buffers
+        .chain(document.list("images"))
+        .filter_map(|object| match Uri::of(object["uri"].as_str().filter(|uri| !uri::is_data(uri))?) {
+            Uri::Relative(path) => Some(path),
+            _ => None,
+        })
+        .collect();
+    let name = |number: usize| match number {
+        1 => format!("{stem}{suffix}.bin"),
+        _ => format!("{stem}{suffix}{number}.bin"),
+    };
+    (1..).map(name).find(|name| !used.contains(&name.into())).expect("one of all numbers")
+}
+
+fn is_same_folder(one: &Path, other: &Path) -> bool {
+    let folder =
+        |path: &Path| std::fs::canonicalize(path.parent().filter(|folder| *folder != "").unwrap_or(".".as_ref()));
+    matches!((folder(one), folder(other)), (Ok(one), Ok(other)) if one == other)
+}
+
+/// The files that a document refers to, for the same places beside the new one.
+fn copied_files(document: &Document, json: &Value, path: &Path, files: &mut Vec<NewFile<'_>>) -> Result<()> {
+    let mut uris = Vec::new();
+    collect_uris(json, &mut uris);
+    for text in uris {
+        let Some(uri) = text.as_str().filter(|uri| !uri::is_data(uri) && !is_url(uri)) else { continue };
+        let Uri::Relative(relative) = Uri::of(uri) else { return Err(outside(document, text)) };
+        let target = path.with_file_name(&relative);
+        if files.iter().any(|file| file.path == target) {
+            continue;
+        }
+        let bytes = std::fs::read(file_of(&document.path, &relative)).map_err(|error| {
+            let reason = format!("it refers to {uri}, which cannot be read: {error}");
+            document.error(reason, "put the file there, or write the model into the folder it came from")
+        })?;
+        if let Some(folder) = target.parent() {
+            std::fs::create_dir_all(folder).map_err(Error::io(folder))?;
+        }
+        files.push(NewFile { path: target, parts: vec![bytes.into()] });
+    }
+    Ok(())
+}
+
+/// An address that is the same from any folder.
+fn is_url(uri: &str) -> bool {
+    uri.split_once("://").is_some_and(|(scheme, _)| scheme.bytes().all(|byte| byte.is_ascii_alphanumeric()))
+}
+
+/// Every field called "uri", extensions' too.
+fn collect_uris<'a>(value: &'a Value, uris: &mut Vec<&'a Value>) {
+    match value {
+        Value::Array(items) => items.iter().for_each(|item| collect_uris(item, uris)),
+        Value::Object(fields) => {
+            uris.extend(fields.get("uri"));
+            fields.iter().filter(|(name, _)| *name != "extras").for_each(|(_, item)| collect_uris(item, uris));
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,56 @@
+//! A block of triangles, gathered.
+
+use super::{Surface, TriangleEdges};
+
+/// Triangles or fans of a block: their numbers, planar, stay in the first cache.
+pub(crate) const BLOCK: usize = 64;
+
+/// A number for each triangle or fan of a block.
+pub(crate) type Plane = [f32; BLOCK];
+
+/// Positions and texture coordinates of a block of triangles, as the mesh has them; beyond the last triangle those of
+/// any other, or zeros.
+pub(crate) struct Triangles {
+    positions: [[Plane; 3]; 3],
+    texcoords: [[Plane; 2]; 3],
+}
+
+impl Default for Triangles {
+    fn default() -> Self {
+        Self { positions: [[[0.0; BLOCK]; 3]; 3], texcoords: [[[0.0; BLOCK]; 2]; 3] }
+    }
+}
+
+impl Triangles {
+    /// Takes the triangles from `first`.
+    #[inline(always)]
+    pub fn gather(&mut self, surface: &Surface<'_>, first: usize) {
+        for (i, triangle) in surface.triangles[first..].iter().take(BLOCK).enumerate() {
+            for corner in 0..3 {
+                let position = surface.positions[triangle[corner] as usize];
+                for axis in 0..3 {
+                    self.positions[corner][axis][i] = position[axis];
+                }
+                let texcoord = surface.texcoords[triangle[corner] as usize];
+                for axis in 0..2 {
+                    self.texcoords[corner][axis][i] = texcoord[axis];
+                }
+            }
+        }
+    }
+
+    /// The edges of a triangle, scaled.
+    #[inline(always)]
+    pub fn edges(&self, surface: &Surface<'_>, i: usize) -> TriangleEdges {
+        let [a, b, c] = &self.texcoords;
+        let texcoords = [[a[0][i], a[1][i]], [b[0][i], b[1][i]], [c[0][i], c[1][i]]];
+        surface.edges_between([self.position(0, i), self.position(1, i), self.position(2, i)], texcoords)
+    }
+
+    /// The position of a triangle's corner.
+    #[inline(always)]
+    pub fn position(&self, corner: usize, i: usize) -> [f32; 3] {
+        let [x, y, z] = &self.positions[corner];
+        [x[i], y[i], z[i]]
+    }
+}
