@@ -11,7 +11,6 @@ mod weights;
 pub(crate) use acos::acos;
 #[cfg(all(test, feature = "gpu"))]
 pub(crate) use acos::nearest_acos;
-#[allow(unused_imports, reason = "for backends that compute several at once")]
 pub(crate) use acos::{acos_estimate, is_in_doubt};
 use float::Wide;
 pub(crate) use float::{nearest_f16, nearest_f32};
