@@ -106,7 +106,7 @@ fn asin(w: u64, z: u64) -> u64 {
 
 /// The high half of a product.
 fn times(a: u64, b: u64) -> u64 {
-    (u128::from(a) * u128::from(b) >> 64) as u64
+    ((u128::from(a) * u128::from(b)) >> 64) as u64
 }
 
 /// The coefficients of P in units of 2^-63, rounded: also in kernels/shared/acos.wgsl.

@@ -9,7 +9,8 @@ mod scale;
 mod weights;
 
 pub(crate) use acos::acos;
-#[allow(unused_imports, reason = "for lanes")]
+#[cfg(all(test, feature = "gpu"))]
+pub(crate) use acos::nearest_acos;
 pub(crate) use acos::{acos_estimate, is_in_doubt};
 use float::Wide;
 pub(crate) use float::{nearest_f16, nearest_f32};

@@ -182,6 +182,10 @@ pub(crate) const TANGENTS_WEIGHTED_FAST: KernelSource = KernelSource {
     files: &[TANGENTS, FANS, WEIGHTED, VECTORS, NATIVE_FLOAT],
 };
 
+/// The whole of IEEE's arithmetic and the angle, for a test of each operation.
+#[cfg(test)]
+pub(crate) const ARITHMETIC: [&str; 4] = [ACOS, WIDE, SOFT_FLOAT, GRADUAL];
+
 /// Every kernel that a backend may run.
 #[cfg(test)]
 pub(crate) const ALL: [KernelSource; 20] = [

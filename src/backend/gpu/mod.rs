@@ -23,6 +23,8 @@ mod reflection;
 mod self_test;
 mod slot;
 #[cfg(test)]
+mod soft_float_tests;
+#[cfg(test)]
 mod tangent_tests;
 mod tangents;
 mod tangents_self_test;

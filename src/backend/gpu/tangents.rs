@@ -1,7 +1,10 @@
 //! Tangents on a device: a frame for each triangle, then a tangent for each fan.
 
 use super::device::Device;
-use super::kernel::*;
+use super::kernel::{
+    FRAMES_HEGDE, FRAMES_HEGDE_FAST, FRAMES_LENGYEL, FRAMES_LENGYEL_FAST, FRAMES_MIKKTSPACE, FRAMES_MIKKTSPACE_FAST,
+    Kernel, TANGENTS_SUMMED, TANGENTS_SUMMED_FAST, TANGENTS_WEIGHTED, TANGENTS_WEIGHTED_FAST,
+};
 use super::mesh_parts::{Parts, Words};
 use super::operation::WORKGROUP;
 use super::transfer::Mapping;
@@ -113,23 +116,24 @@ fn run_part(
         let mut upload = encoder("upload");
         upload.copy_buffer_to_buffer(&slot.upload, 0, &slot.inputs, 0, input_bytes);
         device.queue.submit([upload.finish()]);
+        let bindings = device.bind(
+            slot.params.as_entire_binding(),
+            slot.inputs.as_entire_binding(),
+            slot.outputs.as_entire_binding(),
+        );
         for (pipeline, count) in pipelines.iter().zip([triangles, fans.len()]) {
             for first in (0..count).step_by(per_dispatch) {
                 let end = count.min(first + per_dispatch);
-                let params =
-                    device.uniform(bytemuck::bytes_of(&Params { first: first as u32, end: end as u32, ..params }));
-                let bindings = device.bind(
-                    params.as_entire_binding(),
-                    slot.inputs.as_entire_binding(),
-                    slot.outputs.as_entire_binding(),
-                );
+                let params = Params { first: first as u32, end: end as u32, ..params };
+                // Written before what is submitted next, and after what was before. A submission each, since a
+                // driver's patience is with a submission.
+                device.queue.write_buffer(&slot.params, 0, bytemuck::bytes_of(&params));
                 let mut dispatch = encoder("tangents");
                 let mut pass = dispatch.begin_compute_pass(&Default::default());
                 pass.set_pipeline(pipeline);
                 pass.set_bind_group(0, &bindings, &[]);
                 pass.dispatch_workgroups((end - first).div_ceil(WORKGROUP) as u32, 1, 1);
                 drop(pass);
-                // A submission each: a driver's patience is with a submission.
                 device.queue.submit([dispatch.finish()]);
             }
         }

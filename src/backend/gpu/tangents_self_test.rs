@@ -43,7 +43,8 @@ pub(super) fn compare(device: &Device, plan: &TangentPlan<'_>, limits: Limits) -
 /// A mesh of `vertices` vertices and twice as many triangles without order, and normals for it.
 ///
 /// Positions and texture coordinates have any exponent below 2, or are small integers (right angles, no area), or
-/// any number from -1 to 1, or lie close to 1 (thin triangles); one triangle of 16 has a vertex twice.
+/// any number from -1 to 1, or lie close to 1 (thin triangles); x is tiny for half of the vertices. One triangle of 16
+/// has a vertex twice. After them come [`CORNER_CASES`].
 pub(super) fn noise(vertices: u32, seed: u32) -> Result<(Mesh, Vec<[f32; 3]>)> {
     let bits = |kind: u32, index: u32| scrambled(scrambled(seed * 16 + kind).wrapping_add(index));
     // From -1 to 1.
@@ -55,7 +56,12 @@ pub(super) fn noise(vertices: u32, seed: u32) -> Result<(Mesh, Vec<[f32; 3]>)> {
         _ => 1.0 + real(bits) / 4096.0,
     };
     let axes = |kind: u32, vertex: u32| [0, 1, 2].map(|axis| bits(kind, 3 * vertex + axis));
-    let positions = (0..vertices).map(|vertex| axes(0, vertex).map(|bits| coordinate(vertex, bits))).collect();
+    let positions = (0..vertices).map(|vertex| {
+        let [x, y, z] = axes(0, vertex);
+        // A tangent of such an x has a subnormal one.
+        let x = if vertex / 32 % 2 == 1 { f32::from_bits(x & 0x80ff_ffff) } else { coordinate(vertex, x) };
+        [x, coordinate(vertex, y), coordinate(vertex, z)]
+    });
     let texcoords = (0..vertices).map(|vertex| {
         let [u, v, kind] = axes(1, vertex);
         [coordinate(kind, u), coordinate(kind, v)]
@@ -64,7 +70,7 @@ pub(super) fn noise(vertices: u32, seed: u32) -> Result<(Mesh, Vec<[f32; 3]>)> {
         let [x, y, z] = axes(2, vertex);
         match vertex % 8 {
             0 => [0.0, -1.0, 0.0],
-            1 => [f32::from_bits(x & 0x81ff_ffff), 1.0, -0.0],
+            1 | 3 | 5 => [f32::from_bits(x & 0x81ff_ffff), 1.0, -0.0],
             _ => [x, y, z].map(real),
         }
     });
@@ -73,6 +79,30 @@ pub(super) fn noise(vertices: u32, seed: u32) -> Result<(Mesh, Vec<[f32; 3]>)> {
         let [a, b, _] = axes(3, triangle);
         [first, (first + 1 + a % 12) % vertices, (first + if triangle % 16 == 0 { 0 } else { 1 + b % 12 }) % vertices]
     });
-    let mesh = Mesh::new(positions, texcoords.collect(), triangles.collect())?;
-    Ok((mesh, normals.collect()))
+    let positions: Vec<[f32; 3]> = positions.chain(CORNER_CASES.map(|(position, ..)| position)).collect();
+    let texcoords: Vec<[f32; 2]> = texcoords.chain(CORNER_CASES.map(|(_, texcoord, _)| texcoord)).collect();
+    let normals: Vec<[f32; 3]> = normals.chain(CORNER_CASES.map(|(.., normal)| normal)).collect();
+    let cases = CORNERS_OF_CASES.map(|triangle| triangle.map(|vertex| vertices + vertex));
+    Ok((Mesh::new(positions, texcoords, triangles.chain(cases).collect())?, normals))
 }
+
+/// What noise does not hit: position, texture coordinate and normal of vertices.
+const CORNER_CASES: [([f32; 3], [f32; 2], [f32; 3]); 13] = [
+    // Tangents that nearly cancel.
+    ([0.0; 3], [0.0; 2], [0.0, 0.0, 1.0]),
+    // One nearly along the normal.
+    ([1.0, 0.0, 0.0], [0.5, 0.0], [1.0, 1.0 / 262_144.0, 0.0]),
+    ([0.0, 1.0, 0.0], [0.0, 0.5], [0.0, 0.0, 1.0]),
+    ([-1.0, 1.0 / 1_048_576.0, 0.0], [0.5, 0.0], [0.0, 0.0, 1.0]),
+    // Angles of zero: the cosine computed is more than 1 for the first two.
+    ([0.0; 3], [0.0; 2], [0.0, 0.0, 1.0]),
+    ([0.05, 0.3, 0.0], [0.5, 0.0], [0.0, 0.0, 1.0]),
+    ([0.025, 0.15, 0.0], [0.0, 0.5], [0.0, 0.0, 1.0]),
+    ([0.0; 3], [0.0; 2], [0.0, 0.0, 1.0]),
+    ([0.1, 0.15, 0.0], [0.5, 0.0], [0.0, 0.0, 1.0]),
+    ([0.05, 0.075, 0.0], [0.0, 0.5], [0.0, 0.0, 1.0]),
+    ([0.0; 3], [0.0; 2], [0.0, 0.0, 1.0]),
+    ([0.7, 0.9, 0.0], [0.5, 0.0], [0.0, 0.0, 1.0]),
+    ([0.35, 0.45, 0.0], [0.0, 0.5], [0.0, 0.0, 1.0]),
+];
+const CORNERS_OF_CASES: [[u32; 3]; 5] = [[0, 1, 2], [0, 3, 2], [4, 5, 6], [7, 8, 9], [10, 11, 12]];

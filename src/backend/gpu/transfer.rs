@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
-use wgpu::{BufferViewMut, CommandEncoderDescriptor, ComputePipeline, MapMode, PollType};
+use wgpu::{BufferViewMut, CommandEncoderDescriptor, ComputePipeline, MapMode, PollError, PollType};
 
 /// Bands in flight.
 const RING: usize = 3;
@@ -159,7 +159,11 @@ impl Mapping {
         let wait = PollType::Wait { submission_index: Some(self.submission.clone()), timeout: Some(PATIENCE) };
         let polled = device.device.poll(wait);
         device.check()?;
-        polled.map_err(|error| device.give_up(error))?;
+        polled.map_err(|error| match error {
+            PollError::Timeout => device.give_up(error),
+            // Of a device that is lost without having told it yet.
+            PollError::WrongSubmissionIndex(..) => device.error(error),
+        })?;
         for _ in 0..2 {
             let result = self.mapped.recv_timeout(PATIENCE).map_err(|_| device.give_up("it did not answer"))?;
             result.map_err(|error| device.check().err().unwrap_or_else(|| device.error(error)))?;
