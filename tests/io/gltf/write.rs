@@ -432,6 +432,7 @@ fn from_glb_to_gltf_and_back() {
     let folder = Folder::new();
     let (mut file, position, texcoord) = Builder::square();
     file.mesh(json!({ "attributes": { "POSITION": position, "TEXCOORD_0": texcoord }, "material": 0 }));
+    file.json["images"] = json!([{ "uri": "image.png" }]);
     let path = folder.file("m.glb", &file.glb());
     let out = folder.path("o p.gltf");
     convert(&path, &out);
@@ -548,8 +549,11 @@ fn every_method_fits_every_layout() {
     for (primitive, corners) in corners.iter().enumerate() {
         let mesh = written.mesh(primitive).unwrap();
         let is_flat = |[a, b, c]: [u32; 3]| a == b || b == c || c == a;
-        let got: Vec<_> = mesh.triangles().iter().map(|t| t.map(|v| (mesh.positions()[v as usize], v))).collect();
-        let kept: Vec<_> = corners.iter().filter(|t| !is_flat(t.map(|(_, vertex)| vertex))).copied().collect();
+        let got = mesh.triangles().iter().map(|t| t.map(|v| (mesh.positions()[v as usize], v)));
+        // A strip that was split has lost its joints, another has not.
+        let with_area = |t: &[([f32; 3], u32); 3]| !is_flat(t.map(|(_, vertex)| vertex));
+        let got: Vec<_> = got.filter(with_area).collect();
+        let kept: Vec<_> = corners.iter().copied().filter(with_area).collect();
         assert_eq!(got, kept, "primitive {primitive}");
         assert!(mesh.normals().is_some());
     }
