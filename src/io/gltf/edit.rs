@@ -213,7 +213,7 @@ fn primitive(json: &mut Value, (mesh, number): Place) -> &mut Value {
 }
 
 /// Puts an object in its place in an array, with the name that the one before it had.
-fn put(json: &mut Value, kind: &str, at: usize, mut object: Value) {
+pub(super) fn put(json: &mut Value, kind: &str, at: usize, mut object: Value) {
     if json[kind].is_null() {
         json[kind] = json!([]);
     }

@@ -25,9 +25,9 @@ impl Geometry {
     fn triangles(&self, document: &Document, vertices: usize) -> Result<Vec<[u32; 3]>> {
         let indices: Vec<u32> = match self.indices {
             None => (0..vertices.min(u32::MAX as usize) as u32).collect(),
-            Some(accessor) => Elements::read(document, accessor)?
-                .indices()
-                .ok_or_else(|| document.damaged(format!("its indices, accessors[{accessor}], are none")))?,
+            Some(accessor) => Elements::read(document, accessor)?.indices().ok_or_else(|| {
+                document.damaged(format!("its indices, accessors[{accessor}], are no unsigned integers"))
+            })?,
         };
         // glTF 2.0, section 3.7.2.1; what is left of a last triangle is no triangle.
         Ok(match self.mode {

@@ -2,7 +2,7 @@
 
 use super::container::{BIN, JSON, MAGIC, outside};
 use super::document::{Document, Origin, index};
-use super::edit::Edited;
+use super::edit::{Edited, put};
 use super::uri::{self, Uri, file_of};
 use crate::error::{Error, Result};
 use crate::io::replace::Replacement;
@@ -113,6 +113,7 @@ fn join_buffers<'a>(document: &'a Document, edited: &mut Edited<'_>, added: Vec<
     }
     if !is_binary {
         move_views(&mut edited.json, &places);
+        take_images(&mut edited.json, |bytes| append(bytes.into(), 4));
     }
     if !added.is_empty() {
         let begin = append(added.into(), 4);
@@ -147,6 +148,25 @@ fn move_view(view: &mut Value, places: &[(usize, usize)]) {
         if begin > 0 {
             view["byteOffset"] = (view["byteOffset"].as_u64().unwrap_or(0) + begin as u64).into();
         }
+    }
+}
+
+/// Puts the images in data URIs into the chunk, where a .glb has them; `append` says where they begin.
+fn take_images(json: &mut Value, mut append: impl FnMut(Vec<u8>) -> usize) {
+    let mut images = json.get_mut("images").map(Value::take).unwrap_or_default();
+    for image in images.as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
+        let Some(uri) = image.get("uri").and_then(Value::as_str) else { continue };
+        let Uri::Data(Some(bytes)) = Uri::of(uri) else { continue };
+        let type_ = uri["data:".len()..].split(';').next().unwrap_or_default().to_owned();
+        let view = json!({ "buffer": 0, "byteLength": bytes.len(), "byteOffset": append(bytes) });
+        let at = json["bufferViews"].as_array().map_or(0, Vec::len);
+        put(json, "bufferViews", at, view);
+        image.shift_remove("uri");
+        image.insert("bufferView".into(), at.into());
+        image.entry("mimeType").or_insert(type_.into());
+    }
+    if !images.is_null() {
+        json["images"] = images;
     }
 }
 
