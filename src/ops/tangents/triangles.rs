@@ -1,5 +1,7 @@
 //! A block of triangles, gathered.
 
+#![expect(clippy::needless_range_loop, reason = "an index for all planes of a lane")]
+
 use super::{Surface, TriangleEdges};
 
 /// Triangles or fans of a block: their numbers, planar, stay in the first cache.

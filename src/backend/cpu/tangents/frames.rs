@@ -1,5 +1,7 @@
 //! Lengyel's and Hegde's methods: a frame for each triangle, and their sums.
 
+#![expect(clippy::needless_range_loop, reason = "an index for all planes of a lane")]
+
 use super::{fill_blocks, of_blocks};
 use crate::ops::tangents::{
     BLOCK, Fans, Frame, FrameSum, Plane, Surface, TangentMethod, TangentPlan, Triangles, frame,

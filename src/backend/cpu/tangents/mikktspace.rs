@@ -1,5 +1,7 @@
 //! MikkTSpace's method: a share for each corner, and their sums.
 
+#![expect(clippy::needless_range_loop, reason = "an index for all planes of a lane")]
+
 use super::{fill_blocks, of_blocks};
 use crate::exact::{acos, acos_estimate, is_in_doubt};
 use crate::ops::tangents::{
