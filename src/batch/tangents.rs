@@ -79,7 +79,7 @@ fn sum(a: TangentReport, b: TangentReport) -> TangentReport {
         mirrored: a.mirrored + b.mirrored,
         without_area: a.without_area + b.without_area,
         without_texture_area: a.without_texture_area + b.without_texture_area,
-        unwrapped: a.unwrapped + b.unwrapped,
+        jumps: a.jumps + b.jumps,
         unused: a.unused + b.unused,
         undirected: a.undirected + b.undirected,
         normals_made: a.normals_made + b.normals_made,

@@ -352,7 +352,7 @@ fn the_report_holds_every_count() {
     assert!(left_out[0]["reason"].as_str().unwrap().contains("--all"), "{left_out}");
     let counts = json!({
         "triangles": 216, "vertices": 130, "copies": 10, "mirrored": 10, "without_area": 0,
-        "without_texture_area": 0, "unwrapped": 0, "unused": 0, "undirected": 0, "normals_made": 0,
+        "without_texture_area": 0, "jumps": 0, "unused": 0, "undirected": 0, "normals_made": 0,
         "normals_normalised": 0, "welded": found.welded,
     });
     assert_eq!(take("total"), counts);
