@@ -23,7 +23,7 @@ struct Params {
     corners: u32,
     frames: u32,     // word offsets in outputs
     tangents: u32,
-    reserved: u32,
+    longest_row: u32,  // corners of a fan; the host sums longer ones
 }
 
 @group(0) @binding(0) var<uniform> params: Params;

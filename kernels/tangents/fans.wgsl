@@ -13,7 +13,9 @@ fn tangents(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let n = vector_at(params.normals + 3u * fan);
-    let tangent = tangent_of(n, inputs[params.offsets + fan], inputs[params.offsets + fan + 1u]);
+    let begin = inputs[params.offsets + fan];
+    let end = inputs[params.offsets + fan + 1u];
+    let tangent = tangent_of(n, begin, select(end, begin, end - begin > params.longest_row));
     let at = params.tangents + 4u * fan;
     store(at, tangent.t);
     outputs[at + 3u] = select(0u, params.nonce | tangent.turned, tangent.computed);

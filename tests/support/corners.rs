@@ -36,7 +36,7 @@ const SHOWN: usize = 8;
 
 /// The first corners whose tangents' bits differ, in words; nothing compared is a difference too.
 pub fn tangent_differences(got: &[[f32; 4]], expected: &[[f32; 4]]) -> Result<(), String> {
-    if got.len() != expected.len() || expected.is_empty() || expected.len() % 3 != 0 {
+    if got.len() != expected.len() || expected.is_empty() || !expected.len().is_multiple_of(3) {
         return Err(format!("{} corners were compared with {}", got.len(), expected.len()));
     }
     let bits = |tangent: [f32; 4]| tangent.map(f32::to_bits);

@@ -82,7 +82,7 @@ fn host_params(entry_point: &str) -> (Vec<Word>, usize) {
         "frames" | "tangents" => (
             words! {
                 tangents::Params: first end nonce positions edges triangles normals offsets corners frames tangents
-                    reserved
+                    longest_row
             },
             size_of::<tangents::Params>(),
         ),

@@ -10,7 +10,7 @@ use super::operation::WORKGROUP;
 use super::transfer::Mapping;
 use crate::error::Result;
 use crate::ops::Precision;
-use crate::ops::tangents::{TangentMethod, TangentPlan};
+use crate::ops::tangents::{TangentMethod, TangentPlan, tangent_of_fan};
 use bytemuck::{NoUninit, Pod, Zeroable};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -31,7 +31,7 @@ pub(super) struct Params {
     pub corners: u32,
     pub frames: u32,
     pub tangents: u32,
-    pub reserved: u32,
+    pub longest_row: u32,
 }
 
 /// How much a device takes at once.
@@ -41,11 +41,14 @@ pub(super) struct Limits {
     pub words: usize,
     /// Triangles or fans of a dispatch: a slow GPU computes that many in about 50 ms.
     pub dispatch: usize,
+    /// Corners that one invocation sums; the CPU sums longer rows. Mesa's llvmpipe leaves a loop after 65535 turns,
+    /// and a driver's patience ends too.
+    pub row: usize,
 }
 
 impl Limits {
     pub fn of(device: &Device) -> Self {
-        Self { words: device.greatest_binding() / 4, dispatch: 1 << 18 }
+        Self { words: device.greatest_binding() / 4, dispatch: 1 << 18, row: 1 << 12 }
     }
 }
 
@@ -83,7 +86,10 @@ pub(super) fn run(device: &Device, plan: &TangentPlan<'_>, limits: Limits, out: 
         let too_large = |fan| device.error(format_args!("a tangent of too many triangles for it: that of fan {fan}"));
         let fans = parts.next().map_err(too_large)?;
         done = fans.end;
-        run_part(device, &pipelines, plan, &parts, fans.clone(), limits.dispatch, &mut out[fans])?;
+        run_part(device, &pipelines, plan, &parts, fans.clone(), limits, &mut out[fans])?;
+    }
+    for (fan, tangent) in out.iter_mut().enumerate().filter(|(fan, _)| plan.fans.corners.row(*fan).len() > limits.row) {
+        *tangent = tangent_of_fan(plan, fan);
     }
     Ok(())
 }
@@ -95,7 +101,7 @@ fn run_part(
     plan: &TangentPlan<'_>,
     parts: &Parts<'_>,
     fans: Range<usize>,
-    per_dispatch: usize,
+    limits: Limits,
     out: &mut [[f32; 4]],
 ) -> Result<()> {
     let triangles = parts.triangles.of.len();
@@ -109,7 +115,8 @@ fn run_part(
     let (slot, mapping) = device.guarded(|| {
         let slot = device.slot(input_bytes, output_bytes);
         let view = slot.upload.get_mapped_range_mut(..).map_err(|error| device.error(error))?;
-        let params = Params { nonce, tangents: tangents as u32, ..write(view, plan, parts, &fans) };
+        let longest_row = limits.row as u32;
+        let params = Params { nonce, longest_row, tangents: tangents as u32, ..write(view, plan, parts, &fans) };
         slot.upload.unmap();
         let encoder = |label| device.device.create_command_encoder(&CommandEncoderDescriptor { label: Some(label) });
 
@@ -122,8 +129,8 @@ fn run_part(
             slot.outputs.as_entire_binding(),
         );
         for (pipeline, count) in pipelines.iter().zip([triangles, fans.len()]) {
-            for first in (0..count).step_by(per_dispatch) {
-                let end = count.min(first + per_dispatch);
+            for first in (0..count).step_by(limits.dispatch) {
+                let end = count.min(first + limits.dispatch);
                 let params = Params { first: first as u32, end: end as u32, ..params };
                 // Written before what is submitted next, and after what was before. A submission each, since a
                 // driver's patience is with a submission.

@@ -26,6 +26,8 @@ pub(crate) use finish::finish;
 pub use finish::{TangentReport, Tangents};
 pub(crate) use formula::*;
 pub use options::{MissingNormals, TangentMethod, TangentOptions};
+#[cfg(feature = "gpu")]
+pub(crate) use reference::tangent_of_fan;
 pub(crate) use reference::tangents_of_fans;
 pub(crate) use shading::Shading;
 pub(crate) use surface::{Surface, TriangleEdges};

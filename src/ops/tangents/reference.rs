@@ -6,17 +6,22 @@ use super::{
 
 /// The tangent of each fan, and its handedness as to growing v; zero where no direction is left.
 pub(crate) fn tangents_of_fans(plan: &TangentPlan<'_>, tangents: &mut [[f32; 4]]) {
-    let TangentPlan { method, surface, fans, .. } = *plan;
     for (fan, tangent) in tangents.iter_mut().enumerate() {
-        let n = surface.normals[fans.vertex(fan)];
-        let corners = fans.corners.row(fan);
-        let frame = |corner: u32| frame(method, &surface.edges(corner as usize / 3));
-        *tangent = match method {
-            TangentMethod::Mikktspace => mikktspace_tangent(surface, n, corners, frame),
-            TangentMethod::Lengyel | TangentMethod::Hegde => {
-                corners.iter().fold(FrameSum::default(), |sum, &corner| sum.plus(frame(corner))).tangent(n)
-            }
-        };
+        *tangent = tangent_of_fan(plan, fan);
+    }
+}
+
+/// The tangent of one fan.
+pub(crate) fn tangent_of_fan(plan: &TangentPlan<'_>, fan: usize) -> [f32; 4] {
+    let TangentPlan { method, surface, fans, .. } = *plan;
+    let n = surface.normals[fans.vertex(fan)];
+    let corners = fans.corners.row(fan);
+    let frame = |corner: u32| frame(method, &surface.edges(corner as usize / 3));
+    match method {
+        TangentMethod::Mikktspace => mikktspace_tangent(surface, n, corners, frame),
+        TangentMethod::Lengyel | TangentMethod::Hegde => {
+            corners.iter().fold(FrameSum::default(), |sum, &corner| sum.plus(frame(corner))).tangent(n)
+        }
     }
 }
 

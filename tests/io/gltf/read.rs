@@ -81,7 +81,7 @@ fn quantised_attributes() {
         let mut file = Builder::new();
         let size = if matches!(component, I8 | U8) { 1 } else { 2 };
         let mut attribute = |type_: &str, components: usize| {
-            let stride = (components * size as usize).next_multiple_of(4);
+            let stride = (components * size).next_multiple_of(4);
             let mut bytes = Vec::new();
             for vertex in 0..3 {
                 let begin = bytes.len();
@@ -176,7 +176,7 @@ fn the_normal_map_says_which_texture_coordinates() {
         assert!((turned - expected).abs() < 1e-7, "{turned} is not {expected}");
     }
     // The specification's example shows the lower left quarter of the image.
-    let example = json!({ "offset": [0, 1], "rotation": 1.57079632679, "scale": [0.5, 0.5] });
+    let example = json!({ "offset": [0, 1], "rotation": std::f64::consts::FRAC_PI_2, "scale": [0.5, 0.5] });
     for [u, v] in transformed(example, 0) {
         assert!((-1e-7..=0.5000001).contains(&u) && (0.4999999..=1.0000001).contains(&v), "({u}, {v})");
     }

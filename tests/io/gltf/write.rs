@@ -54,7 +54,7 @@ fn nothing_else_changes() {
     let attributes = json!({ "TEXCOORD_0": texcoord, "POSITION": position });
     file.mesh(json!({ "material": 0, "indices": indices, "attributes": attributes, "extras": { "z": 1, "a": [0.1] } }));
     // Numbers with all their digits, an unknown extension anywhere, names in any order.
-    file.json["nodes"][0]["matrix"] = json!([0.1, 1e-7, 123456789.123456789, 5e-324, 1e300, -0.0, 0, 3.0]);
+    file.json["nodes"][0]["matrix"] = json!([0.1, 1e-7, 123456789.12345679, 5e-324, 1e300, -0.0, 0, 3.0]);
     file.json["zzz"] = json!({ "b": null, "a": [true, "ü\u{1}\"", {}] });
     file.json["extensionsUsed"] = json!(["VENDOR_unknown"]);
     file.json["extensions"] = json!({ "VENDOR_unknown": { "b": [], "a": 18446744073709551615u64 } });
