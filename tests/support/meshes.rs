@@ -185,7 +185,7 @@ fn fan(triangles: u32) -> Mesh {
 /// Triangles around vertex 0, in the plane z = 0, mapped without distortion, which wind around it so often that each
 /// spans nearly a sixth of a turn: no slivers, however many there are.
 pub fn star(triangles: u32) -> Mesh {
-    let is_coprime = |step: &u32| (2..=*step).all(|n| triangles % n != 0 || step % n != 0);
+    let is_coprime = |step: &u32| !(2..=*step).any(|n| triangles.is_multiple_of(n) && step.is_multiple_of(n));
     let step = (1..=triangles / 6).rev().find(is_coprime).expect("1 is");
     let point = |at: u32| 1 + (u64::from(at) * u64::from(step) % u64::from(triangles)) as u32;
     let fan = fan(triangles);
