@@ -19,7 +19,7 @@ pub enum Precision {
     ///
     /// - MikkTSpace: off by 2e-4 degrees at most on smooth surfaces; on real models by 1e-3 in 999 of 1000 corners and
     ///   2.4e-2 at most, where triangles are slivers. Corners whose tangents are equal may be split, or the other way
-    ///   round: one vertex in 150 meshes.
+    ///   round: one vertex of 149 meshes.
     /// - Lengyel, Hegde: no difference where the device divides and takes roots as IEEE says.
     /// - Signs: none differ.
     Fast,

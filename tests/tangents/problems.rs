@@ -265,9 +265,9 @@ fn missing_normals_are_smooth() {
     }
 }
 
-/// Duplicates at a seam, at (1, 0) and (1, -0), have one smooth normal, the same as all around. Of the flat normals
-/// beside a vertex, each half a column away, those of as many triangles meet on both sides of the middle row; two on one
-/// side and one on the other in the first row, and the other way round in the last.
+/// Duplicates at a seam, at (1, 0) and (1, -0), have one smooth normal, the same as all around. The flat normals beside
+/// a vertex are half a column away on either side: those of three triangles each in the middle row; of two and of one
+/// in the first, and the other way round in the last.
 #[test]
 fn smooth_normals_have_no_seam() {
     let mesh = without_normals(&cylinder(16, 2));
@@ -465,8 +465,8 @@ fn one_triangle_has_one_tangent() {
 
 /// A vertex of a hundred thousand triangles. Each has its t along x but for rounding: of coordinates, by 2^-25 over a
 /// sine of 0.86, and 20 u of Lengyel's formula, 2e-6 in all; and so has their sum, for what rounding makes of x turns
-/// nothing, and y's parts are as small as their sum. Hegde's edges point everywhere to the right, as many up as down but
-/// for one or two.
+/// nothing, and y's parts are as small as their sum. Hegde's edges point everywhere to the right, as many up as down
+/// but for one or two.
 #[test]
 fn a_fan_of_a_hundred_thousand_triangles() {
     let mesh = star(100_000);

@@ -169,8 +169,8 @@ fn sphere(columns: u32, rows: u32) -> (Vec<Point>, Vec<[u32; 3]>) {
     })
 }
 
-/// A side and two lids; the seam's two sides are equal in all, the texture being mirrored half way round. The lids share
-/// the rims' vertices, or have some with normals of their own.
+/// A side and two lids; the seam's two sides are equal in all, the texture being mirrored half way round. The lids
+/// share the rims' vertices, or have some with normals of their own.
 fn closed_cylinder(columns: u32, rows: u32, has_sharp_rims: bool) -> (Vec<Point>, Vec<[u32; 3]>) {
     let around = |u: f32| if u == 1.0 { (0.0, 1.0) } else { (u * std::f32::consts::TAU).sin_cos() };
     let (mut points, mut triangles) = sheet(columns, rows, |u, v| {
