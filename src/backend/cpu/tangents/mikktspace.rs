@@ -13,6 +13,8 @@ use crate::ops::tangents::{
 
 /// Where the shares of a block of corners are computed.
 struct Room {
+    /// Those of each corner's triangle.
+    vertices: [[u32; 3]; BLOCK],
     triangles: Triangles,
     /// Which corner of its triangle each is.
     places: [u32; BLOCK],
@@ -28,6 +30,7 @@ struct Room {
 impl Default for Room {
     fn default() -> Self {
         Self {
+            vertices: [[0; 3]; BLOCK],
             triangles: Triangles::default(),
             places: [0; BLOCK],
             normals: [[0.0; BLOCK]; 3],
@@ -56,6 +59,10 @@ vectorised! {
         while begin < end {
             let corners = &fans.corners.corners()[begin..end.min(begin + BLOCK)];
             let mut fan_of = [0; BLOCK];
+            // A loop of its own, so short that the processor runs many turns at once: it waits for memory.
+            for (i, &corner) in corners.iter().enumerate() {
+                room.vertices[i] = surface.triangles[corner as usize / 3];
+            }
             for (i, &corner) in corners.iter().enumerate() {
                 while offsets[fan + 1] as usize <= begin + i {
                     fan += 1;
@@ -85,10 +92,10 @@ vectorised! {
 }
 
 impl Room {
-    /// Takes a corner of a fan with this normal.
+    /// Takes a corner, whose vertices are known, of a fan with this normal.
     #[inline(always)]
     fn set(&mut self, i: usize, surface: &Surface<'_>, corner: u32, normal: [f32; 3]) {
-        self.triangles.set(i, surface, surface.triangles[corner as usize / 3]);
+        self.triangles.set(i, surface, self.vertices[i]);
         self.places[i] = corner % 3;
         for axis in 0..3 {
             self.normals[axis][i] = normal[axis];
