@@ -1,7 +1,5 @@
 //! What MikkTSpace makes of each triangle.
 
-#![expect(clippy::needless_range_loop, reason = "an index for all planes of a lane")]
-
 use super::Surface;
 use crate::ops::tangents::pieces::of_pieces_mut;
 use crate::ops::tangents::{BLOCK, TangentMethod, Triangles, dot, frame, is_zero, mikktspace_area, project};
