@@ -6,7 +6,8 @@ const LEAST_SUM: u32 = 0x37800000u;     // 2^-16 of what the sum would be if not
 const LEAST_SQUARE: u32 = 0x2f800000u;  // 2^-32: of the part at a right angle to the normal
 
 fn tangent_of(normal: vec3<u32>, begin: u32, end: u32) -> Tangent {
-    var sum: array<vec3<u32>, 3>;  // of t, of b; then the normal
+    // The sums of t and of b, and the normal: three vectors, so that one loop makes them unit vectors.
+    var sum: array<vec3<u32>, 3>;
     var magnitude = 0u;
     var computed = true;
     for (var i = begin; i < end; i++) {

@@ -64,8 +64,8 @@ fn unit(v: vec3<u32>) -> vec3<u32> {
     if (greatest == 0u) {
         return vec3(0u);
     }
-    // A power of two that brings the greatest component between 1 and 2.
-    let factor = 0x7f000000u - (greatest & 0x7f800000u);
+    // A power of two that brings the greatest component between 1 and 2; for one of 2^127 the least that is no subnormal.
+    let factor = max(0x7f000000u - (greatest & 0x7f800000u), 0x00800000u);
     let near_one = times3(factor, v);
     return times3(inverse(square_root(dot3(near_one, near_one))), near_one);
 }

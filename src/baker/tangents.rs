@@ -81,8 +81,8 @@ impl Baker {
 
 /// Fails unless an adjacency has a row for each vertex of a mesh and holds as many corners.
 fn check_fits(adjacency: &CornerAdjacency, mesh: &Mesh) -> Result<()> {
-    let text = |vertices, corners| format!("of {vertices} vertices and {corners} corners");
-    let given = text(adjacency.rows(), adjacency.corners().len());
-    let wanted = text(mesh.positions().len(), 3 * mesh.triangles().len());
-    if given == wanted { Ok(()) } else { Err(Error::parameter("adjacency", given, wanted)) }
+    let given = (adjacency.rows(), adjacency.corners().len());
+    let wanted = (mesh.positions().len(), 3 * mesh.triangles().len());
+    let text = |(vertices, corners)| format!("of {vertices} vertices and {corners} corners");
+    if given == wanted { Ok(()) } else { Err(Error::parameter("adjacency", text(given), text(wanted))) }
 }

@@ -30,14 +30,18 @@ impl Mesh {
     ///
     /// # Errors
     /// [`Error::Parameter`] if there are more or fewer texture coordinates than positions, an index is out of range,
-    /// or there are 2^32 corners or more; [`Error::Vertex`] for a number that is NaN or infinite.
+    /// or there are more than 2^30 vertices or 2^29 triangles; [`Error::Vertex`] for a number that is NaN or infinite.
     pub fn new(positions: Vec<[f32; 3]>, texcoords: Vec<[f32; 2]>, triangles: Vec<[u32; 3]>) -> Result<Self> {
         check_count("texture coordinates", texcoords.len(), positions.len())?;
         check_finite("position", &positions)?;
         check_finite("texture coordinate", &texcoords)?;
-        if triangles.len() > u32::MAX as usize / 3 {
-            let range = format!("at most {}", u32::MAX / 3);
-            return Err(Error::parameter("number of triangles", triangles.len(), range));
+        // Vertices, corners and copies of vertices are all counted in 32 bits.
+        for (parameter, count, greatest) in
+            [("number of vertices", positions.len(), 1 << 30), ("number of triangles", triangles.len(), 1 << 29)]
+        {
+            if count > greatest {
+                return Err(Error::parameter(parameter, count, format!("at most {greatest}")));
+            }
         }
         let in_range = |triangle: &[u32; 3]| triangle.iter().all(|&index| (index as usize) < positions.len());
         if let Some(triangle) = triangles.iter().position(|triangle| !in_range(triangle)) {

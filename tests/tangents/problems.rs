@@ -110,11 +110,11 @@ fn unwrapping_is_the_same_as_vertices_at_the_seam() {
     }
 }
 
-/// v runs .9375, 0, .5: whichever corner comes first, the second one counts as 1.
+/// u runs .9375, 0, .5: whichever corner comes first, the second one counts as 1.
 #[test]
 fn unwrapping_does_not_depend_on_the_first_corner() {
     let positions = vec![[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
-    let texcoords = |second: f32| vec![[0.0, 0.9375], [0.25, second], [0.5, 0.5]];
+    let texcoords = |second: f32| vec![[0.9375, 0.0], [second, 0.25], [0.5, 0.5]];
     let flat = |second, triangle| Mesh::new(positions.clone(), texcoords(second), vec![triangle]).unwrap();
     let flat = |second, triangle| flat(second, triangle).with_normals(vec![[0.0, 0.0, 1.0]; 3]).unwrap();
     for method in [TangentMethod::Lengyel, TangentMethod::Mikktspace] {
@@ -122,6 +122,22 @@ fn unwrapping_does_not_depend_on_the_first_corner() {
             let unwrapped = tangents(&flat(0.0, triangle), &TangentOptions { unwrap: true, ..by(method) });
             assert_eq!(unwrapped.report.jumps, 1);
             assert_eq!(unwrapped.tangents, tangents(&flat(1.0, triangle), &by(method)).tangents, "{method}");
+        }
+    }
+}
+
+/// A triangle that would have no area left, and one that spans more than the whole texture, stay as they are.
+#[test]
+fn what_cannot_have_jumped_is_not_unwrapped() {
+    for method in METHODS {
+        for (repeats, jumps) in [(1.0, 2), (3.0, 0)] {
+            let square = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+            let texcoords = vec![[0.0, repeats], [repeats, repeats], [repeats, 0.0], [0.0, 0.0]];
+            let square = Mesh::new(square, texcoords, vec![[0, 1, 2], [0, 2, 3]]).unwrap();
+            let square = square.with_normals(vec![[0.0, 0.0, 1.0]; 4]).unwrap();
+            let unwrapped = tangents(&square, &TangentOptions { unwrap: true, ..by(method) });
+            assert_eq!(unwrapped.report, TangentReport { jumps, ..nothing_found(&square) }, "{method}");
+            assert_eq!(unwrapped.tangents, [[1.0, 0.0, 0.0, 1.0]; 4], "{method}");
         }
     }
 }

@@ -55,14 +55,16 @@ fn tangents_just_within_the_angle_become_one() {
 }
 
 #[test]
-fn never_across_handedness_nor_across_normals() {
+fn never_across_handedness_nor_across_an_edge() {
     let same = triangles_at(&[10.0, 12.0], &[false, false], &[UP; 2]);
     assert_eq!(welded(&same, 10.0).report.welded, 2);
     let mirrored = triangles_at(&[10.0, 12.0], &[false, true], &[UP; 2]);
     let made = welded(&mirrored, 90.0);
     assert_eq!((made.report.welded, made.tangents[0][3], made.tangents[3][3]), (0, 1.0, -1.0));
     let tilted = triangles_at(&[10.0, 12.0], &[false, false], &[UP, [0.0, 0.6, 0.8]]);
-    assert_eq!(welded(&tilted, 90.0).report.welded, 0);
+    // The normals are 36.87 degrees apart.
+    assert_eq!(welded(&tilted, 36.0).report.welded, 0);
+    assert_eq!(welded(&tilted, 38.0).report.welded, 2);
 }
 
 /// 0, 30 and 60 degrees within 40: the first takes the second; the third is alone.

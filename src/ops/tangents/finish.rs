@@ -41,7 +41,8 @@ pub struct TangentReport {
     pub without_area: usize,
     /// Triangles without area in the texture.
     pub without_texture_area: usize,
-    /// Triangles whose u or v spans more than half the texture: what [`TangentOptions::unwrap`] unwraps.
+    /// Triangles whose u spans more than half the texture, and not more than all of it: those that
+    /// [`TangentOptions::unwrap`] is for.
     pub jumps: usize,
     /// Vertices that no triangle uses; their tangent is any at a right angle to the normal.
     pub unused: usize,

@@ -15,11 +15,12 @@ pub struct TangentOptions {
     pub convention: Convention,
     /// Normals for a mesh that has none.
     pub missing_normals: MissingNormals,
-    /// Whether texture coordinates of a triangle that are further apart than half the texture are taken to have jumped
-    /// from 1 to 0 in between (Hegde's cylinder).
+    /// Whether u that spans more than half the texture, and not more than all of it, in a triangle is taken to have
+    /// jumped from 1 to 0 there (Hegde's cylinder). A triangle that would lose its texture area stays as it is. Not for
+    /// meshes of which a triangle rightly spans so much.
     pub unwrap: bool,
-    /// Degrees, 0 to 90: tangents of vertices at one position and with one normal become equal if they have the same
-    /// handedness and are no further apart (FGED2 section 7.5).
+    /// Degrees, 0 to 90: tangents of vertices at one position become equal if they have the same handedness and neither
+    /// they nor the normals are further apart (FGED2 section 7.5).
     pub weld_seams: Option<f32>,
     /// Exact bytes, or speed.
     pub precision: Precision,

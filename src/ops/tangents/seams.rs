@@ -5,8 +5,9 @@ use super::{add, dot, project, sub, unit};
 use crate::mesh::Mesh;
 use std::collections::HashMap;
 
-/// Averages the tangents of vertices that have position, normal and handedness in common and lie at most `degrees`
-/// from the first of them that has not been averaged. Tells how many vertices have another tangent now.
+/// Averages the tangents of vertices that have position and handedness in common and whose tangents and normals lie at
+/// most `degrees` from those of the first of them that has not been averaged. Where normals differ, by rounding say,
+/// each vertex projects the average for itself. Tells how many vertices have another tangent now.
 pub(super) fn weld_seams(mesh: &Mesh, vertices: &mut Vertices<'_>, degrees: f32) -> usize {
     let own = mesh.positions().len();
     // Minus zero is zero.
@@ -14,8 +15,7 @@ pub(super) fn weld_seams(mesh: &Mesh, vertices: &mut Vertices<'_>, degrees: f32)
     let mut places = HashMap::<_, Vec<usize>>::new();
     for vertex in (0..vertices.tangents.len()).filter(|&vertex| vertices.is_directed[vertex]) {
         let source = vertex.checked_sub(own).map_or(vertex, |copy| vertices.copies[copy] as usize);
-        let place =
-            (bits(mesh.positions()[source]), bits(vertices.normals[vertex]), vertices.tangents[vertex][3] > 0.0);
+        let place = (bits(mesh.positions()[source]), vertices.tangents[vertex][3] > 0.0);
         places.entry(place).or_default().push(vertex);
     }
 
@@ -29,14 +29,18 @@ pub(super) fn weld_seams(mesh: &Mesh, vertices: &mut Vertices<'_>, degrees: f32)
                 let [x, y, z, _] = vertices.tangents[vertex];
                 [x, y, z]
             };
-            let is_near = |&vertex: &usize| {
-                let apart = sub(direction(first), direction(vertex));
+            let are_near = |a: [f32; 3], b: [f32; 3]| {
+                let apart = sub(a, b);
                 dot(apart, apart) <= greatest
+            };
+            let is_near = |&vertex: &usize| {
+                are_near(direction(first), direction(vertex))
+                    && are_near(vertices.normals[first], vertices.normals[vertex])
             };
             let (near, far): (Vec<usize>, Vec<usize>) = rest.iter().partition(|vertex| is_near(vertex));
             let sum = near.iter().fold([0.0; 3], |sum, &vertex| add(sum, direction(vertex)));
-            let [x, y, z] = unit(project(vertices.normals[first], sum));
             for &vertex in &near {
+                let [x, y, z] = unit(project(vertices.normals[vertex], sum));
                 let tangent = [x, y, z, vertices.tangents[vertex][3]];
                 if near.len() > 1 && tangent != vertices.tangents[vertex] {
                     vertices.tangents[vertex] = tangent;

@@ -1,7 +1,7 @@
 //! A mesh as the formulas see it: at one scale, with a normal for every vertex.
 
 use super::pieces::of_pieces;
-use super::{sub, times};
+use super::{mikktspace_area, sub, times};
 use crate::mesh::Mesh;
 
 /// A mesh at a scale of which no formula overflows.
@@ -16,8 +16,8 @@ pub(crate) struct Surface<'a> {
     pub normals: &'a [[f32; 3]],
     pub texcoords: &'a [[f32; 2]],
     pub texcoord_scale: f32,
-    /// Whether a corner whose u or v is more than half a texture behind the greatest of its triangle counts as one
-    /// texture further: Hegde's temporary duplicates with u + 1.
+    /// Whether a corner whose u is more than half a texture behind the greatest of its triangle counts as one
+    /// texture further, as long as the triangle keeps an area: Hegde's temporary duplicates with u + 1.
     pub unwrap: bool,
     pub triangles: &'a [[u32; 3]],
 }
@@ -92,38 +92,43 @@ impl<'a> Surface<'a> {
 
     #[inline(always)]
     fn texture_edges_between(&self, [a, b, c]: [[f32; 2]; 3]) -> [[f32; 2]; 2] {
-        let [x1, x2] = self.differences([a[0], b[0], c[0]]);
-        let [y1, y2] = self.differences([a[1], b[1], c[1]]);
-        [[x1, y1], [x2, y2]]
-    }
-
-    /// One texture coordinate of three corners, scaled, less that of the first.
-    #[inline(always)]
-    fn differences(&self, [a, b, c]: [f32; 3]) -> [f32; 2] {
-        let turn = self.texcoord_scale;
-        let (a, b, c) = (a * turn, b * turn, c * turn);
-        let differences = [b - a, c - a];
-        if !self.unwrap {
-            return differences;
-        }
-        let behind = self.behind([a, b, c]);
-        let turns = |coordinate: f32| if coordinate < behind { turn } else { 0.0 };
-        [differences[0] + (turns(b) - turns(a)), differences[1] + (turns(c) - turns(a))]
-    }
-
-    /// Half a texture behind the greatest of a scaled texture coordinate of three corners.
-    #[inline(always)]
-    fn behind(&self, [a, b, c]: [f32; 3]) -> f32 {
-        a.max(b).max(c) - 0.5 * self.texcoord_scale
-    }
-
-    /// Whether u or v of a triangle with these texture coordinates, which are the mesh's, spans more than half the
-    /// texture: it may have jumped from 1 to 0.
-    #[inline(always)]
-    pub fn jumps(&self, [[au, av], [bu, bv], [cu, cv]]: [[f32; 2]; 3]) -> bool {
         let scale = self.texcoord_scale;
-        let spans = |a: f32, b: f32, c: f32| a.min(b).min(c) < self.behind([a, b, c]);
-        spans(au * scale, bu * scale, cu * scale) | spans(av * scale, bv * scale, cv * scale)
+        let u = [a[0] * scale, b[0] * scale, c[0] * scale];
+        let v = [a[1] * scale, b[1] * scale, c[1] * scale];
+        let [x1, x2] = [u[1] - u[0], u[2] - u[0]];
+        let [y1, y2] = [v[1] - v[0], v[2] - v[0]];
+        let given = [[x1, y1], [x2, y2]];
+        if !self.unwrap {
+            return given;
+        }
+        let [a, b, c] = self.turns(u);
+        let unwrapped = [[x1 + (b - a), y1], [x2 + (c - a), y2]];
+        if mikktspace_area(unwrapped) == 0.0 { given } else { unwrapped }
+    }
+
+    /// What unwrapping adds to the scaled u of three corners: a whole texture to those that are more than half of one
+    /// behind the greatest.
+    #[inline(always)]
+    fn turns(&self, [a, b, c]: [f32; 3]) -> [f32; 3] {
+        let turn = if self.spans([a, b, c]) { self.texcoord_scale } else { 0.0 };
+        let behind = a.max(b).max(c) - 0.5 * self.texcoord_scale;
+        let turn_of = |coordinate: f32| if coordinate < behind { turn } else { 0.0 };
+        [turn_of(a), turn_of(b), turn_of(c)]
+    }
+
+    /// Whether the scaled u of three corners spans more than half the texture, and not more than all.
+    #[inline(always)]
+    fn spans(&self, [a, b, c]: [f32; 3]) -> bool {
+        let span = a.max(b).max(c) - a.min(b).min(c);
+        (span > 0.5 * self.texcoord_scale) & (span <= self.texcoord_scale)
+    }
+
+    /// Whether u of a triangle with these texture coordinates, which are the mesh's, spans more than half the texture,
+    /// and not more than all: it may have jumped from 1 to 0.
+    #[inline(always)]
+    pub fn jumps(&self, [[a, _], [b, _], [c, _]]: [[f32; 2]; 3]) -> bool {
+        let scale = self.texcoord_scale;
+        self.spans([a * scale, b * scale, c * scale])
     }
 }
 

@@ -31,7 +31,7 @@ struct Slot {
 impl<'a> Representatives<'a> {
     pub fn new(fabric: &'a Fabric<'a>) -> Self {
         let welds = fabric.rows.rows() as u32;
-        let position = |weld: u32| fabric.surface.positions[fabric.welds.vertex(weld) as usize];
+        let position = |weld: u32| fabric.surface.position(fabric.welds.vertex(weld));
         let used = (0..welds).into_par_iter().filter(|&weld| !fabric.rows.row(weld as usize).is_empty());
         let (least, greatest) = used
             .map(|weld| (position(weld), position(weld)))
@@ -90,7 +90,7 @@ fn first_corners(fabric: &Fabric<'_>, bucket: &[(u16, u32)], is_wanted: &[bool])
     let mut corners: Vec<(u64, u32)> = bucket.iter().flat_map(of_weld).collect();
     corners.sort_unstable();
     let slot = |&(order, weld): &(u64, u32)| Slot {
-        position: fabric.surface.positions[fabric.welds.vertex(weld) as usize],
+        position: fabric.surface.position(fabric.welds.vertex(weld)),
         corner: order as u32,
         weld: if is_wanted[weld as usize] { weld } else { NONE },
     };
