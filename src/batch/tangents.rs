@@ -5,13 +5,13 @@ use super::outcome::Outcome;
 use super::report::{RunReport, as_text};
 use super::targets::{self, Files};
 use crate::baker::{Baker, Ran};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::io::{LeftOut, Model, ModelReadOptions};
 use crate::ops::tangents::{MissingNormals, TangentOptions, TangentReport};
 use crate::stream::Monitor;
 use serde::Serialize;
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -65,6 +65,12 @@ impl ModelTangents {
         self.primitives.iter().fold(TangentReport::default(), |total, primitive| sum(total, primitive.found))
     }
 
+    /// Vertices, of the meshes as they were read, that got normals because their mesh had none.
+    pub fn normals_of_their_own(&self) -> usize {
+        let without = self.primitives.iter().filter(|primitive| !primitive.has_normals);
+        without.map(|primitive| primitive.found.normals_made).sum()
+    }
+
     /// How many primitives of the file have tangents now.
     pub fn with_tangents(&self) -> usize {
         self.primitives.iter().map(|primitive| primitive.shared_by).sum()
@@ -79,7 +85,7 @@ fn sum(a: TangentReport, b: TangentReport) -> TangentReport {
         mirrored: a.mirrored + b.mirrored,
         without_area: a.without_area + b.without_area,
         without_texture_area: a.without_texture_area + b.without_texture_area,
-        unwrapped: a.unwrapped + b.unwrapped,
+        jumps: a.jumps + b.jumps,
         unused: a.unused + b.unused,
         undirected: a.undirected + b.undirected,
         normals_made: a.normals_made + b.normals_made,
@@ -103,6 +109,9 @@ impl TangentJob {
     /// input is refused.
     pub fn run(&self, monitor: &Monitor) -> Outcome<ModelTangents> {
         let files = self.files();
+        if self.input.is_dir() {
+            return Outcome::unopened(a_folder(&self.input));
+        }
         if let Some(refusal) = targets::refusals(std::slice::from_ref(&files)).into_iter().flatten().next() {
             return Outcome::unopened(refusal);
         }
@@ -111,9 +120,10 @@ impl TangentJob {
             let mut model = Model::read_with(&self.input, &self.read)?;
             let done = self.compute(&mut model, monitor)?;
             create_folder_of(&self.output)?;
-            model.write(&self.output)?;
+            monitor.check()?;
+            model.write_unless_cancelled(&self.output, monitor)?;
             warnings.extend_from_slice(model.warnings());
-            warnings.extend(self::warnings(&done, self.options.missing_normals));
+            warnings.extend(self::warnings(&done, &self.options));
             Ok(done)
         })
     }
@@ -136,13 +146,22 @@ impl TangentJob {
             model.set_tangents(index, tangents)?;
             bitangents.map_or(Ok(()), |bitangents| model.set_bitangents(index, bitangents))?;
         }
-        monitor.check()?;
         Ok(done)
     }
 }
 
+/// One model at a time.
+fn a_folder(path: &Path) -> Error {
+    let folder = path.display();
+    let remedy = format!(
+        "name a model file in it; several go one by one: \
+         for model in {folder}/*.glb; do texbake tangents \"$model\" -o out/; done"
+    );
+    Error::file(path, "it is a folder", remedy)
+}
+
 /// What a user should know about the meshes.
-fn warnings(done: &ModelTangents, missing_normals: MissingNormals) -> Vec<String> {
+fn warnings(done: &ModelTangents, options: &TangentOptions) -> Vec<String> {
     let counted = |count: &dyn Fn(&PrimitiveTangents) -> usize| {
         let concerned = || done.primitives.iter().filter(|primitive| count(primitive) > 0);
         let total: usize = concerned().map(count).sum();
@@ -152,13 +171,32 @@ fn warnings(done: &ModelTangents, missing_normals: MissingNormals) -> Vec<String
     let made = |has_normals: bool| {
         counted(&|primitive| if primitive.has_normals == has_normals { primitive.found.normals_made } else { 0 })
     };
-    let undirected = counted(&|primitive| primitive.found.undirected).map(|places| {
+    // A triangle that rightly spans more than half of the texture has no area left when it is unwrapped.
+    let flattened = |primitive: &PrimitiveTangents| options.unwrap && primitive.found.jumps > 0;
+    let undirected = |by_unwrap: bool| {
+        counted(&|primitive| if flattened(primitive) == by_unwrap { primitive.found.undirected } else { 0 })
+    };
+    const MADE_UP: &str = "they got any tangent at a right angle to the normal, and a normal map does not fit there";
+    let unwrapped = undirected(true).map(|places| {
         format!(
-            "undirected vertices: {places}: their triangles have no area in the texture, or their tangents cancel; \
-             they got any tangent at a right angle to the normal, and a normal map does not fit there"
+            "undirected vertices: {places}: --unwrap took triangles that span more than half of the texture to have \
+             jumped from 1 to 0; if they span it rightly, leave --unwrap out; {MADE_UP}"
         )
     });
-    let remade = match missing_normals {
+    let undirected = undirected(false).map(|places| {
+        format!(
+            "undirected vertices: {places}: their triangles have no area in the texture, or their tangents cancel; \
+             {MADE_UP}"
+        )
+    });
+    let jumps = counted(&|primitive| match primitive.found {
+        TangentReport { jumps, mirrored: 1.., .. } if !options.unwrap => jumps,
+        _ => 0,
+    });
+    let jumps = jumps.map(|places| {
+        format!("triangles that span more than half of the texture: {places}: if u jumps from 1 to 0 there, --unwrap")
+    });
+    let remade = match options.missing_normals {
         MissingNormals::Flat => "each triangle got its own, as glTF prescribes; --normals smooth rounds the edges",
         MissingNormals::Smooth => "they got smooth ones",
     };
@@ -173,7 +211,12 @@ fn warnings(done: &ModelTangents, missing_normals: MissingNormals) -> Vec<String
         format!("left out: {}: {reason}", listed(&names))
     });
     let nothing = done.primitives.is_empty().then(|| "no primitive got tangents".to_owned());
-    [undirected, missing, zero, normalised].into_iter().flatten().chain(left_out).chain(nothing).collect()
+    [undirected, unwrapped, jumps, missing, zero, normalised]
+        .into_iter()
+        .flatten()
+        .chain(left_out)
+        .chain(nothing)
+        .collect()
 }
 
 /// Names, of many only the first.

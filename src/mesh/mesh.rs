@@ -32,17 +32,19 @@ impl Mesh {
     /// [`Error::Parameter`] if there are more or fewer texture coordinates than positions, an index is out of range,
     /// or there are 2^32 corners or more; [`Error::Vertex`] for a number that is NaN or infinite.
     pub fn new(positions: Vec<[f32; 3]>, texcoords: Vec<[f32; 2]>, triangles: Vec<[u32; 3]>) -> Result<Self> {
-        check_count("texture coordinates", texcoords.len(), positions.len())?;
+        check_count("number of texture coordinates", texcoords.len(), positions.len())?;
         check_finite("position", &positions)?;
         check_finite("texture coordinate", &texcoords)?;
         if triangles.len() > u32::MAX as usize / 3 {
             let range = format!("at most {}", u32::MAX / 3);
             return Err(Error::parameter("number of triangles", triangles.len(), range));
         }
-        let in_range = |triangle: &[u32; 3]| triangle.iter().all(|&index| (index as usize) < positions.len());
-        if let Some(triangle) = triangles.iter().position(|triangle| !in_range(triangle)) {
+        let in_range = |index: &u32| (*index as usize) < positions.len();
+        if let Some(triangle) = triangles.iter().position(|triangle| !triangle.iter().all(in_range)) {
+            let corners = triangles[triangle];
+            let wrong = corners.into_iter().find(|index| !in_range(index)).unwrap_or_default();
             let range = format!("below {}, the number of vertices", positions.len());
-            return Err(Error::parameter("index", format!("{:?} in triangle {triangle}", triangles[triangle]), range));
+            return Err(Error::parameter("index", format!("{wrong} (triangle {triangle}: {corners:?})"), range));
         }
         Ok(Self { positions, normals: None, texcoords, triangles })
     }
@@ -53,7 +55,7 @@ impl Mesh {
     /// [`Error::Parameter`] if there are more or fewer normals than positions; [`Error::Vertex`] for a number that is
     /// NaN or infinite.
     pub fn with_normals(mut self, normals: Vec<[f32; 3]>) -> Result<Self> {
-        check_count("normals", normals.len(), self.positions.len())?;
+        check_count("number of normals", normals.len(), self.positions.len())?;
         check_finite("normal", &normals)?;
         self.normals = Some(normals);
         Ok(self)

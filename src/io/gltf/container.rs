@@ -99,7 +99,16 @@ fn read_buffer(document: &Document, number: usize, bin: Option<&[u8]>, limit: u6
                 check(bytes.len())?;
                 (bytes, Origin::DataUri)
             }
-            Uri::Relative(path) => (read_file(&file_of(&document.path, &path), limit)?, Origin::File),
+            Uri::Relative(path) => {
+                let missing = |error| match error {
+                    Error::Io { source, .. } => document.error(
+                        format!("it refers to {uri}, which cannot be read: {source}"),
+                        "put the file where the model looks for it",
+                    ),
+                    other => other,
+                };
+                (read_file(&file_of(&document.path, &path), limit).map_err(missing)?, Origin::File)
+            }
             Uri::Other => return Err(outside(document, uri)),
         },
     };

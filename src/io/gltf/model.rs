@@ -10,6 +10,7 @@ use crate::error::{Error, Result};
 use crate::io::{MAX_BYTES, obj};
 use crate::mesh::Mesh;
 use crate::ops::tangents::Tangents;
+use crate::stream::Monitor;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -217,14 +218,18 @@ impl Model {
     /// [`Error::File`] if the extension is another, a file that the model refers to is not below its folder, or an
     /// attribute of a split vertex cannot be copied; [`Error::Io`].
     pub fn write(&self, path: impl AsRef<Path>) -> Result<()> {
-        let path = path.as_ref();
+        self.write_unless_cancelled(path.as_ref(), &Monitor::default())
+    }
+
+    /// The same; no file appears if it is cancelled before all are complete.
+    pub(crate) fn write_unless_cancelled(&self, path: &Path, monitor: &Monitor) -> Result<()> {
         ModelFormat::of(path)?;
         let mut edited = Edited::new(&self.document);
         for (&primitive, made) in &self.made {
             let (geometry, places) = &self.geometries[primitive];
             edited.apply(geometry, places, made).map_err(|error| named(&self.document, places[0], error))?;
         }
-        write::write(&self.document, edited, path)
+        write::write(&self.document, edited, path, monitor)
     }
 
     fn geometry(&self, primitive: usize) -> Result<&(Geometry, Vec<Place>)> {

@@ -113,8 +113,8 @@ fn geometry(document: &Document, primitive: &Value, all: bool) -> Result<Result<
         Some(4) => Mode::Triangles,
         Some(5) => Mode::Strip,
         Some(6) => Mode::Fan,
-        Some(0) => return Ok(Err("it is made of points".into())),
-        Some(1..=3) => return Ok(Err("it is made of lines".into())),
+        Some(0) => return Ok(Err("it is made of points, which have no tangents".into())),
+        Some(1..=3) => return Ok(Err("it is made of lines, which have no tangents".into())),
         _ => return Err(document.damaged("its mode is none of glTF's")),
     };
     let Some(texture) = normal_texture(document, primitive)?.or(all.then_some(&Value::Null)) else {

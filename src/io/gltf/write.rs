@@ -6,6 +6,7 @@ use super::edit::{Edited, put};
 use super::uri::{self, Uri, file_of};
 use crate::error::{Error, Result};
 use crate::io::replace::Replacement;
+use crate::stream::Monitor;
 use serde_json::{Value, json};
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashSet};
@@ -49,7 +50,7 @@ impl ModelFormat {
 
 /// Writes a model and, unless it stays in its folder, the files it refers to; the model itself comes last, so that
 /// it never refers to what is not yet there.
-pub(super) fn write(document: &Document, mut edited: Edited<'_>, path: &Path) -> Result<()> {
+pub(super) fn write(document: &Document, mut edited: Edited<'_>, path: &Path, monitor: &Monitor) -> Result<()> {
     let mut files = Vec::new();
     let added = std::mem::take(&mut edited.added);
     let model = match ModelFormat::of(path)? {
@@ -67,6 +68,7 @@ pub(super) fn write(document: &Document, mut edited: Edited<'_>, path: &Path) ->
     }
     files.push(NewFile { path: path.into(), parts: model });
     let ready = files.into_iter().map(NewFile::write).collect::<Result<Vec<_>>>()?;
+    monitor.check()?;
     ready.into_iter().try_for_each(Replacement::commit)
 }
 

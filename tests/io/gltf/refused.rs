@@ -156,13 +156,13 @@ fn numbers_that_are_none_and_indices_of_nothing() {
     assert_eq!(refused(&[zero, [0.0, f32::NAN, 0.0], zero], U8, &[0, 1, 2]), expected);
     for (component, index) in [(U8, 255), (U16, 65535), (U32, u32::MAX)] {
         let expected = format!(
-            "mesh 0 \"rock\", primitive 0: its index is [0, {index}, 2] in triangle 0: it must be below 3, the number \
+            "mesh 0 \"rock\", primitive 0: its index is {index} (triangle 0: [0, {index}, 2]): it must be below 3, the number \
              of vertices{EXPORT}"
         );
         assert_eq!(refused(&[zero; 3], component, &[0, index, 2]), expected);
     }
     let expected = format!(
-        "mesh 0 \"rock\", primitive 0: its texture coordinates is 3: it must be 2, one for each position{EXPORT}"
+        "mesh 0 \"rock\", primitive 0: its number of texture coordinates is 3: it must be 2, one for each position{EXPORT}"
     );
     let mut file = Builder::new();
     let (position, texcoord) = (file.floats(&[zero; 2]), file.floats(&[[0.0; 2]; 3]));
