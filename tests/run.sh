@@ -164,10 +164,18 @@ fetch_validator() {
     echo "$TEXBAKE_GLTF_VALIDATOR"
 }
 
-# Real models, most of them with normal maps: the controllers of @webxr-input-profiles/assets (npm, MIT licence). Only
-# left hands, the right ones being their mirror images. TEXBAKE_REQUIRE_MODELS=1 makes their absence a failure.
+# The Stanford bunny from npm (public domain) as an OBJ, with x and y as texture coordinates.
+bunny_as_obj() {
+    node -e 'const { positions, cells } = require(process.argv[1]);
+        for (const [x, y, z] of positions) console.log(`v ${x} ${y} ${z}\nvt ${x / 8} ${y / 8}`);
+        for (const cell of cells) console.log("f", cell.map((at) => `${at + 1}/${at + 1}`).join(" "));' "$1"
+}
+
+# Real models, most of them with normal maps: the controllers of @webxr-input-profiles/assets (npm, MIT licence), only
+# left hands, the right ones being their mirror images; and a scan. TEXBAKE_REQUIRE_MODELS=1 makes their absence a
+# failure.
 fetch_models() {
-    local name=@webxr-input-profiles/assets@1.0.20 folder profile hand file
+    local name=@webxr-input-profiles/assets@1.0.20 bunny=bunny@1.0.1 folder profile hand file
     local sha256=30df2a2268220fc0d0e034bed1550aabdd7a2500573c5216f64fc70d59c3d91e
     folder=${CARGO_TARGET_DIR:-$PWD/target}/models
     if [ ! -e "$folder/complete" ]; then
@@ -187,8 +195,13 @@ fetch_models() {
         fi
         rm -rf "$folder/package"
     fi
-    if [ ! -e "$folder/complete" ]; then
-        echo "$name is out of reach: the tests of real models are not run"
+    if [ ! -e "$folder/bunny.obj" ] \
+        && npm_package "$bunny" 381e02c74b98cf18814d7bec794726ef70b9c67e037273e82054d0043f6ae303 "$folder/bunny"; then
+        bunny_as_obj "$folder/bunny/package" > "$folder/bunny.new" && mv "$folder/bunny.new" "$folder/bunny.obj"
+        rm -rf "$folder/bunny"
+    fi
+    if [ ! -e "$folder/complete" ] || [ ! -e "$folder/bunny.obj" ]; then
+        echo "$name or $bunny is out of reach: the tests of real models are not run"
         [ "${TEXBAKE_REQUIRE_MODELS:-0}" != 1 ]
         return
     fi

@@ -5,8 +5,8 @@ const FRAME_WORDS: u32 = 7u;
 const LEAST_SUM: u32 = 0x37800000u;     // 2^-16 of what the sum would be if nothing cancelled
 const LEAST_SQUARE: u32 = 0x2f800000u;  // 2^-32: of the part at a right angle to the normal
 
-fn tangent_of(n: vec3<u32>, begin: u32, end: u32) -> Tangent {
-    var sum: array<vec3<u32>, 2>;
+fn tangent_of(normal: vec3<u32>, begin: u32, end: u32) -> Tangent {
+    var sum: array<vec3<u32>, 3>;  // of t, of b; then the normal
     var magnitude = 0u;
     var computed = true;
     for (var i = begin; i < end; i++) {
@@ -18,9 +18,11 @@ fn tangent_of(n: vec3<u32>, begin: u32, end: u32) -> Tangent {
         }
     }
     let cancels = size_of(sum[0]) < mul(LEAST_SUM, magnitude);
-    for (var vector = 0u; vector < 2u; vector++) {
+    sum[2] = normal;
+    for (var vector = 0u; vector < 3u; vector++) {
         sum[vector] = unit(sum[vector]);
     }
+    let n = sum[2];
     let turned = sign_of(dot3(cross3(sum[0], sum[1]), n));
     let tangent = projected(n, sum[0]);
     if (cancels || dot3(tangent, tangent) < LEAST_SQUARE) {

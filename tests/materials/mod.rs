@@ -5,12 +5,12 @@
 
 use crate::oracle::{UnormZero, blend, image, parallax, parallax_with_normals};
 use crate::support::{
-    Format, Image, SNORM16, Subject, UNORM8, UNORM16, assert_same, blend_options, every_baker, map_u16, normal_map,
-    pair, parallax_options, scale, weighted, xy,
+    Format, Image, SNORM16, Subject, UNORM8, UNORM16, assert_same, blend_options, every_baker, fetched, map_u16,
+    normal_map, pair, parallax_options, scale, weighted, xy,
 };
 use std::fs::File;
 use std::io::BufReader;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use texbake::{
     BakeOptions, BlendInputs, BlendMethod, Depth, HeightMap, Heights, NormalFormat, NormalMap, NormalOptions,
     ParallaxFormat, Precision, Size,
@@ -28,13 +28,8 @@ struct Material {
 
 /// Both materials, or `None` if they were not fetched.
 fn materials() -> Option<[Material; 2]> {
-    let Some(folder) = std::env::var_os("TEXBAKE_MATERIALS").filter(|folder| !folder.is_empty()) else {
-        println!("not tested: TEXBAKE_MATERIALS names no folder of materials");
-        let required = std::env::var("TEXBAKE_REQUIRE_MATERIALS").is_ok_and(|value| value == "1");
-        assert!(!required, "TEXBAKE_REQUIRE_MATERIALS=1, but TEXBAKE_MATERIALS names no folder");
-        return None;
-    };
-    Some(["tiles", "rocks"].map(|name| Material::read(&PathBuf::from(&folder).join(name))))
+    let folder = fetched("MATERIALS")?;
+    Some(["tiles", "rocks"].map(|name| Material::read(&folder.join(name))))
 }
 
 impl Material {

@@ -173,13 +173,25 @@ pub fn pole(triangles: u32) -> Mesh {
 }
 
 /// Triangles around vertex 0, in the plane z = 0, mapped without distortion.
-pub fn fan(triangles: u32) -> Mesh {
+fn fan(triangles: u32) -> Mesh {
     let mut points = vec![([0.0, 0.0], [0.5, 0.5])];
     for step in 0..triangles {
         let (sin, cos) = (TAU * f64::from(step) / f64::from(triangles)).sin_cos();
         points.push(([cos as f32, sin as f32], [(0.5 + 0.5 * cos) as f32, (0.5 - 0.5 * sin) as f32]));
     }
     flat_mesh(&points, (0..triangles).map(|step| [0, 1 + step, 1 + (step + 1) % triangles]).collect())
+}
+
+/// Triangles around vertex 0, in the plane z = 0, mapped without distortion, which wind around it so often that each
+/// spans nearly a sixth of a turn: no slivers, however many there are.
+pub fn star(triangles: u32) -> Mesh {
+    let is_coprime = |step: &u32| !(2..=*step).any(|n| triangles.is_multiple_of(n) && step.is_multiple_of(n));
+    let step = (1..=triangles / 6).rev().find(is_coprime).expect("1 is");
+    let point = |at: u32| 1 + (u64::from(at) * u64::from(step) % u64::from(triangles)) as u32;
+    let fan = fan(triangles);
+    let normals = fan.normals().expect("normals").to_vec();
+    let triangles = (0..triangles).map(|at| [0, point(at), point(at + 1)]).collect();
+    mesh(fan.positions().to_vec(), normals, fan.texcoords().to_vec(), triangles)
 }
 
 /// A cube with vertices of their own for each face, and the whole texture on each.

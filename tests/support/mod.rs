@@ -6,6 +6,7 @@ mod boundaries;
 mod codes;
 mod compare;
 mod corners;
+mod fetched;
 mod meshes;
 mod mikktspace;
 mod pairs;
@@ -21,9 +22,10 @@ pub use compare::{Format, Image, assert_same, differences};
 pub use corners::{
     Corner, angle, assert_same_tangents, corner_tangents, corners, direction, result_differences, tangent_differences,
 };
+pub use fetched::fetched;
 pub use meshes::{
-    changed, cube, cylinder, cylinder_with_a_jump, degenerate_triangles, every_mesh, fan, flat_mesh, hills, mesh,
-    mirrored_halves, plane, pole, soup, sphere, torus, uneven, without_normals,
+    changed, cube, cylinder, cylinder_with_a_jump, degenerate_triangles, every_mesh, flat_mesh, hills, mesh,
+    mirrored_halves, plane, pole, soup, sphere, star, torus, uneven, without_normals,
 };
 pub use mikktspace::{bevy_tangents, meshopt_tangents};
 pub use pairs::{every_difference_pair, greatest_sum, map_of_pairs};

@@ -3,7 +3,7 @@
 use super::{SUMS, as_to_v, tangents};
 use crate::oracle::{TangentFormula, real_tangents};
 use crate::support::{angle, corners, cylinder_with_a_jump, direction, every_mesh};
-use texbake::{Mesh, TangentMethod, TangentOptions};
+use texbake::{Mesh, MissingNormals, TangentMethod, TangentOptions, Tangents};
 
 fn formula(method: TangentMethod) -> TangentFormula {
     match method {
@@ -27,10 +27,15 @@ const NO_PROOF: f64 = 1e-3;
 
 /// Counts of corners: compared, without a direction or proof, and of those compared the ones with a handedness.
 fn compare(name: &str, mesh: &Mesh, options: &TangentOptions) -> [usize; 3] {
-    let made = tangents(mesh, options);
-    let corners = corners(mesh, &made);
+    compare_with(name, mesh, options, &tangents(mesh, options))
+}
+
+/// The same of tangents that are made already.
+pub fn compare_with(name: &str, mesh: &Mesh, options: &TangentOptions, made: &Tangents) -> [usize; 3] {
+    let corners = corners(mesh, made);
     let normals: Vec<_> = corners.iter().map(|corner| corner.normal).collect();
-    let own = mesh.normals().is_none().then(|| unshared(mesh));
+    let is_flat = mesh.normals().is_none() && options.missing_normals == MissingNormals::Flat;
+    let own = is_flat.then(|| unshared(mesh));
     let seen = own.as_ref().unwrap_or(mesh);
     let expected = real_tangents(seen, &normals, formula(options.method), options.unwrap);
     let [mut directed, mut undirected, mut handed] = [0; 3];

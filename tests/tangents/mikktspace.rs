@@ -17,12 +17,17 @@ fn near_one(mesh: &Mesh) -> Mesh {
     changed(mesh, |v| v.map(|part| p * part), |n| n, |uv| uv.map(|part| t * part))
 }
 
-/// Fails unless every corner has the reference's bytes where the reference has a direction, and its handedness.
-/// Tells how many corners have one.
+/// The tangents of every baker against the reference's.
 fn assert_bevys(what: &str, mesh: &Mesh, options: &TangentOptions) -> usize {
     let made = corners(mesh, &tangents(mesh, options));
     let is_far = what.contains("1e");
-    let expected = bevy_tangents(&if is_far { near_one(mesh) } else { mesh.clone() }, &made);
+    assert_bevys_corners(what, &if is_far { near_one(mesh) } else { mesh.clone() }, &made)
+}
+
+/// Fails unless every corner has the reference's bytes where the reference has a direction, and its handedness.
+/// Tells how many corners have one.
+pub fn assert_bevys_corners(what: &str, mesh: &Mesh, made: &[Corner]) -> usize {
+    let expected = bevy_tangents(mesh, made);
     assert_eq!(expected.len(), made.len());
     let is_direction = |tangent: &[f32; 4]| tangent[..3].iter().any(|&part| part != 0.0);
     // Where the reference has nothing, any direction will do: what every tangent is, `output` tests.

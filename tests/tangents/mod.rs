@@ -7,6 +7,7 @@ mod laws;
 mod mikktspace;
 mod output;
 mod problems;
+mod real_models;
 mod refusals;
 mod seams;
 
@@ -40,8 +41,13 @@ fn of_few_threads() -> &'static [Subject] {
 
 /// The tangents of a mesh, the same from every baker.
 fn tangents(mesh: &Mesh, options: &TangentOptions) -> Tangents {
+    tangents_of(every_baker().iter().chain(of_few_threads()), mesh, options)
+}
+
+/// The tangents of a mesh, the same from the reference and from these bakers.
+fn tangents_of<'a>(bakers: impl Iterator<Item = &'a Subject>, mesh: &Mesh, options: &TangentOptions) -> Tangents {
     let expected = Baker::reference().tangents(mesh, options).unwrap_or_else(|error| panic!("{options:?}: {error}"));
-    for Subject { name, baker } in every_baker().iter().chain(of_few_threads()) {
+    for Subject { name, baker } in bakers {
         let got = baker.tangents(mesh, options).unwrap_or_else(|error| panic!("{name}, {options:?}: {error}"));
         result_differences(mesh, &got, &expected).unwrap_or_else(|report| panic!("{name}, {options:?}: {report}"));
     }

@@ -17,7 +17,7 @@ pub(crate) struct FaceCounts {
     /// Their edges have one direction, or none.
     pub without_area: usize,
     pub without_texture_area: usize,
-    pub unwrapped: usize,
+    pub jumps: usize,
     pub mirrored: usize,
 }
 
@@ -48,16 +48,14 @@ impl Faces {
 vectorised! {
     /// Finds the handedness of a block, and counts.
     fn look(surface: &Surface<'_>, triangles: &Triangles, handedness: &mut [i8], counts: &mut FaceCounts) {
-        let wrapped = Surface { unwrap: false, ..*surface };
         let mut signs = [0; BLOCK];
         let mut is_flat = [0; BLOCK];
-        let mut is_unwrapped = [0; BLOCK];
+        let mut jumps = [0; BLOCK];
         for i in 0..BLOCK {
             let edges = triangles.edges(surface, i);
-            let as_they_are = triangles.edges(&wrapped, i);
             signs[i] = i32::from(super::handedness([edges.d1, edges.d2]));
             is_flat[i] = i32::from(is_zero(cross(scaled_to_one(edges.e1), scaled_to_one(edges.e2))));
-            is_unwrapped[i] = i32::from(differ(edges.d1, as_they_are.d1) | differ(edges.d2, as_they_are.d2));
+            jumps[i] = i32::from(surface.jumps(triangles.texcoords(i)));
         }
         let count = handedness.len().min(BLOCK);
         for i in 0..count {
@@ -65,14 +63,9 @@ vectorised! {
             counts.without_area += is_flat[i] as usize;
             counts.without_texture_area += usize::from(signs[i] == 0);
             counts.mirrored += usize::from(signs[i] < 0);
-            counts.unwrapped += is_unwrapped[i] as usize;
+            counts.jumps += jumps[i] as usize;
         }
     }
-}
-
-#[inline(always)]
-fn differ(a: [f32; 2], b: [f32; 2]) -> bool {
-    (a[0] != b[0]) | (a[1] != b[1])
 }
 
 impl FaceCounts {
@@ -80,7 +73,7 @@ impl FaceCounts {
         Self {
             without_area: self.without_area + other.without_area,
             without_texture_area: self.without_texture_area + other.without_texture_area,
-            unwrapped: self.unwrapped + other.unwrapped,
+            jumps: self.jumps + other.jumps,
             mirrored: self.mirrored + other.mirrored,
         }
     }
@@ -104,12 +97,12 @@ mod tests {
 
         let faces = Faces::of(&Surface::new(&mesh, &normals, true));
         assert!(faces.handedness.chunks(5).all(|five| five == [1, -1, 0, 1, 0]));
-        let expected = FaceCounts { without_area: 6000, without_texture_area: 6000, unwrapped: 3000, mirrored: 3000 };
+        let expected = FaceCounts { without_area: 6000, without_texture_area: 6000, jumps: 3000, mirrored: 3000 };
         assert_eq!(faces.counts, expected);
         assert!(faces.are_mixed());
 
         let faces = Faces::of(&Surface::new(&mesh, &normals, false));
         assert!(faces.handedness.chunks(5).all(|five| five == [1, -1, 0, -1, 0]));
-        assert_eq!(faces.counts, FaceCounts { unwrapped: 0, mirrored: 6000, ..expected });
+        assert_eq!(faces.counts, FaceCounts { mirrored: 6000, ..expected });
     }
 }

@@ -41,8 +41,8 @@ pub struct TangentReport {
     pub without_area: usize,
     /// Triangles without area in the texture.
     pub without_texture_area: usize,
-    /// Triangles whose texture coordinates were unwrapped.
-    pub unwrapped: usize,
+    /// Triangles whose u or v spans more than half the texture: what [`TangentOptions::unwrap`] unwraps.
+    pub jumps: usize,
     /// Vertices that no triangle uses; their tangent is any at a right angle to the normal.
     pub unused: usize,
     /// Vertices for which no direction was left: tangents cancel, or no triangle around has one. Their tangent is any
@@ -126,7 +126,7 @@ pub(crate) fn finish(
         unused: vertices.unused,
         without_area: faces.counts.without_area,
         without_texture_area: faces.counts.without_texture_area,
-        unwrapped: faces.counts.unwrapped,
+        jumps: faces.counts.jumps,
         undirected: vertices.is_directed.iter().filter(|&&is_directed| !is_directed).count() - vertices.unused,
         normals_made: shading.made,
         normals_normalised: shading.normalised,

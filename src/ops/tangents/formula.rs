@@ -125,6 +125,7 @@ impl FrameSum {
     /// if the part at a right angle to n is below 2^-16.
     #[inline(always)]
     pub fn tangent(self, n: [f32; 3]) -> [f32; 4] {
+        let n = unit(n);
         let [x, y, z] = self.t;
         let cancels = (x.abs() + y.abs()) + z.abs() < 2f32.powi(-16) * self.magnitude;
         let (t, b) = (unit(self.t), unit(self.b));

@@ -7,8 +7,8 @@ use crate::mesh::{CornerAdjacency, Mesh};
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-/// Normals whose length is off by more than this are normalised; others are taken as they are, for MikkTSpace does so,
-/// and 8-bit normals are off by 0.007.
+/// Normals whose length is off by more than this are normalised; others stay as they are, for MikkTSpace takes them so,
+/// and 8-bit normals are off by 0.007. Lengyel's and Hegde's methods normalise what they use.
 const LENGTH_TOLERANCE: f32 = 0.01;
 
 /// A mesh with a usable normal for every vertex.

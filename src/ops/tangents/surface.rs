@@ -106,9 +106,24 @@ impl<'a> Surface<'a> {
         if !self.unwrap {
             return differences;
         }
-        let behind = a.max(b).max(c) - 0.5 * turn;
+        let behind = self.behind([a, b, c]);
         let turns = |coordinate: f32| if coordinate < behind { turn } else { 0.0 };
         [differences[0] + (turns(b) - turns(a)), differences[1] + (turns(c) - turns(a))]
+    }
+
+    /// Half a texture behind the greatest of a scaled texture coordinate of three corners.
+    #[inline(always)]
+    fn behind(&self, [a, b, c]: [f32; 3]) -> f32 {
+        a.max(b).max(c) - 0.5 * self.texcoord_scale
+    }
+
+    /// Whether u or v of a triangle with these texture coordinates, which are the mesh's, spans more than half the
+    /// texture: it may have jumped from 1 to 0.
+    #[inline(always)]
+    pub fn jumps(&self, [[au, av], [bu, bv], [cu, cv]]: [[f32; 2]; 3]) -> bool {
+        let scale = self.texcoord_scale;
+        let spans = |a: f32, b: f32, c: f32| a.min(b).min(c) < self.behind([a, b, c]);
+        spans(au * scale, bu * scale, cu * scale) | spans(av * scale, bv * scale, cv * scale)
     }
 }
 

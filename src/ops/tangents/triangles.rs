@@ -44,9 +44,15 @@ impl Triangles {
     /// The edges of a triangle, scaled.
     #[inline(always)]
     pub fn edges(&self, surface: &Surface<'_>, i: usize) -> TriangleEdges {
+        let positions = [self.position(0, i), self.position(1, i), self.position(2, i)];
+        surface.edges_between(positions, self.texcoords(i))
+    }
+
+    /// The texture coordinates of a triangle's corners.
+    #[inline(always)]
+    pub fn texcoords(&self, i: usize) -> [[f32; 2]; 3] {
         let [a, b, c] = &self.texcoords;
-        let texcoords = [[a[0][i], a[1][i]], [b[0][i], b[1][i]], [c[0][i], c[1][i]]];
-        surface.edges_between([self.position(0, i), self.position(1, i), self.position(2, i)], texcoords)
+        [[a[0][i], a[1][i]], [b[0][i], b[1][i]], [c[0][i], c[1][i]]]
     }
 
     /// The position of a triangle's corner.

@@ -7,23 +7,13 @@
 use super::Builder;
 use super::builder::{I16, TRIANGLES, U8, U16};
 use crate::io::support::Folder;
+use crate::support::fetched;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use texbake::io::{Model, ModelReadOptions};
 use texbake::{Baker, TangentMethod, TangentOptions};
-
-/// A folder that a variable names; `None` without it, unless it is required.
-fn folder(name: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os(format!("TEXBAKE_{name}")).filter(|folder| !folder.is_empty());
-    if folder.is_none() {
-        println!("not tested: TEXBAKE_{name} names no folder");
-        let required = std::env::var(format!("TEXBAKE_REQUIRE_{name}")).is_ok_and(|value| value == "1");
-        assert!(!required, "TEXBAKE_REQUIRE_{name}=1, but TEXBAKE_{name} names no folder");
-    }
-    folder.map(PathBuf::from)
-}
 
 /// How often the validator says what of each file.
 fn messages(validator: &Path, files: &[PathBuf]) -> Vec<BTreeMap<String, usize>> {
@@ -148,7 +138,7 @@ fn samples() -> Vec<(&'static str, Builder)> {
 
 #[test]
 fn hand_made_models() {
-    let Some(validator) = folder("GLTF_VALIDATOR") else { return };
+    let Some(validator) = fetched("GLTF_VALIDATOR") else { return };
     let folder = Folder::new();
     std::fs::create_dir(folder.path("out")).unwrap();
     let mut files = Vec::new();
@@ -182,7 +172,7 @@ fn hand_made_models() {
 
 #[test]
 fn real_models() {
-    let (Some(validator), Some(models)) = (folder("GLTF_VALIDATOR"), folder("MODELS")) else { return };
+    let (Some(validator), Some(models)) = (fetched("GLTF_VALIDATOR"), fetched("MODELS")) else { return };
     let mut inputs: Vec<PathBuf> = std::fs::read_dir(&models).unwrap().map(|entry| entry.unwrap().path()).collect();
     inputs.retain(|path| path.extension().is_some_and(|extension| extension == "glb" || extension == "gltf"));
     inputs.sort();

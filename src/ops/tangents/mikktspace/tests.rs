@@ -169,6 +169,33 @@ fn sphere(columns: u32, rows: u32) -> (Vec<Point>, Vec<[u32; 3]>) {
     })
 }
 
+/// A side and two lids; the seam's two sides are equal in all, the texture being mirrored half way round. The lids
+/// share the rims' vertices, or have some with normals of their own.
+fn closed_cylinder(columns: u32, rows: u32, has_sharp_rims: bool) -> (Vec<Point>, Vec<[u32; 3]>) {
+    let around = |u: f32| if u == 1.0 { (0.0, 1.0) } else { (u * std::f32::consts::TAU).sin_cos() };
+    let (mut points, mut triangles) = sheet(columns, rows, |u, v| {
+        let (sin, cos) = around(u);
+        ([cos, sin, v], [cos, sin, 0.0], [(u - 0.5).abs(), v])
+    });
+    for (row, z) in [(0, 0.0), (rows, 1.0)] {
+        let n = [0.0, 0.0, 2.0 * z - 1.0];
+        let middle = points.len() as u32;
+        points.push(([0.0, 0.0, z], n, [0.25, 0.5]));
+        let mut rim: Vec<u32> = (0..=columns).map(|column| row * (columns + 1) + column).collect();
+        if has_sharp_rims {
+            rim.iter_mut().for_each(|vertex| {
+                let (p, _, _) = points[*vertex as usize];
+                points.push((p, n, [p[0], p[1]]));
+                *vertex = points.len() as u32 - 1;
+            });
+        }
+        let pairs =
+            rim.windows(2).map(|pair| if z > 0.0 { [middle, pair[0], pair[1]] } else { [middle, pair[1], pair[0]] });
+        triangles.extend(pairs);
+    }
+    (points, triangles)
+}
+
 /// A disc whose texture turns around its centre.
 fn hub(spokes: u32) -> (Vec<Point>, Vec<[u32; 3]>) {
     let n = [0.0, 0.0, 1.0];
@@ -234,6 +261,8 @@ fn surfaces_have_the_reference_s_bytes() {
         ("torus", torus(24, 16, true)),
         ("closed torus", torus(24, 16, false)),
         ("sphere", sphere(32, 16)),
+        ("closed cylinder", closed_cylinder(18, 5, false)),
+        ("closed cylinder with sharp rims", closed_cylinder(17, 4, true)),
         ("hub", hub(12)),
         ("odd hub", hub(13)),
         ("large hub", hub(100)),
@@ -339,4 +368,26 @@ fn no_direction_is_left_only_where_the_reference_has_none() {
         ours(&mesh).iter().map(|tangent| tangent.is_some_and(|[x, y, z, _]| !is_zero([x, y, z]))).collect();
     let (none, all) = ([false; 3], [true; 3]);
     assert_eq!(is_directed, [none, none, all, [true, true, false]].concat());
+}
+
+/// The reference finds equal vertices by cells of the mesh's extent, which overflows above 1.7e38: it welds nothing
+/// there. Here equal vertices are one at any size.
+#[test]
+fn vertices_of_any_size_are_welded() {
+    let scaled = |points: &[Point], factor: f32| -> Vec<Point> {
+        points.iter().map(|&(p, n, uv)| (p.map(|part| factor * part), n, uv)).collect()
+    };
+    let (points, triangles) = unindexed(&torus(24, 16, true));
+    let expected = ours(&mesh(&points, triangles.clone()));
+    assert_equal(&mesh(&points, triangles.clone()), "at unit size");
+    // The greatest coordinate is near 3.
+    for exponent in [126, 100, -100] {
+        let far = mesh(&scaled(&points, 2f32.powi(exponent)), triangles.clone());
+        assert_eq!(bits(&ours(&far)), bits(&expected), "2^{exponent}");
+        let fans = Fans::of_mikktspace(&Surface::new(&far, far.normals().unwrap(), false)).count();
+        assert_eq!(fans, 25 * 17, "2^{exponent}");
+    }
+    let largest = mesh(&scaled(&points, 2f32.powi(126)), triangles);
+    assert!(largest.positions().as_flattened().iter().any(|part| *part > 1.7e38));
+    assert_ne!(bits(&Oracle::tangents(&largest)), bits(&expected), "the reference does not");
 }

@@ -1,12 +1,17 @@
 //! What `fast` precision costs: its codes and directions beside those of `exact`, on every backend of this machine.
 //!
 //! ```text
-//! cargo bench --bench accuracy
+//! cargo bench --bench accuracy                                       # all
+//! cargo bench --bench accuracy -- tangents                           # tangents alone; or maps
+//! TEXBAKE_MODELS=target/models cargo bench --bench accuracy -- tangents
 //! ```
 //!
 //! The maps are noise of every steepness from flat to vertical, 16-bit and float heights, 1024 x 1024. The angle is
 //! between the fast and the exact normal as floats, before any code is rounded. Blends and parallax maps have codes
-//! alone: blends are of the normal maps of the noise and of the same noise turned around, weighted 1 and -1/2.
+//! alone: blends are of the normal maps of the noise and of the same noise turned around, weighted 1 and -1/2. Tangents
+//! are of a torus, a sphere, a heightfield and, if TEXBAKE_MODELS names their folder, of real models.
+
+mod tangents;
 
 use texbake::{
     Baker, BlendInputs, BlendMethod, BlendOptions, CodesRef, Depth, Encoding, Filter, Grid, HeightMap, NormalFormat,
@@ -17,6 +22,19 @@ const SIDE: usize = 1024;
 const SEED: u64 = 1;
 
 fn main() -> Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
+    let is_wanted = |name: &str| arguments.is_empty() || arguments.iter().any(|argument| argument == name);
+    let bakers = bakers();
+    if is_wanted("maps") {
+        print_maps(&bakers)?;
+    }
+    if is_wanted("tangents") {
+        tangents::print(&bakers)?;
+    }
+    Ok(())
+}
+
+fn print_maps(bakers: &[Baker]) -> Result<()> {
     println!(
         "{:<34} {:<8} {:>22} {:>22} {:>26}",
         "backend", "heights", "8-bit codes that differ", "16-bit", "angle, degrees"
@@ -25,11 +43,10 @@ fn main() -> Result<()> {
         "{:<34} {:<8} {:>12} {:>10} {:>12} {:>9} {:>13} {:>12}",
         "", "", "share", "most", "share", "most", "mean", "most"
     );
-    for baker in bakers() {
+    for baker in bakers {
         for (name, map) in [("u16", steepnesses_u16()?), ("f32", steepnesses_f32()?)] {
-            let [bits8, bits16] =
-                [Depth::Bits8, Depth::Bits16].map(|depth| codes(&baker, &map, Encoding::Unorm, depth));
-            let (mean, most) = angles(&baker, &map)?;
+            let [bits8, bits16] = [Depth::Bits8, Depth::Bits16].map(|depth| codes(baker, &map, Encoding::Unorm, depth));
+            let (mean, most) = angles(baker, &map)?;
             let [a, b] = [bits8?, bits16?];
             let short = baker.name().chars().take(34).collect::<String>();
             println!(
@@ -39,12 +56,12 @@ fn main() -> Result<()> {
         }
         let maps = NormalMaps::new()?;
         for (name, method) in methods()? {
-            let [a, b] = [Depth::Bits8, Depth::Bits16].map(|depth| maps.blended(&baker, method, depth));
-            print_codes(&baker, name, a?, b?);
+            let [a, b] = [Depth::Bits8, Depth::Bits16].map(|depth| maps.blended(baker, method, depth));
+            print_codes(baker, name, a?, b?);
         }
         for (name, map) in [("u16 to parallax", steepnesses_u16()?), ("f32 to parallax", parallax_heights()?)] {
-            let [a, b] = [Depth::Bits8, Depth::Bits16].map(|depth| parallaxes(&baker, &map, depth));
-            print_codes(&baker, name, a?, b?);
+            let [a, b] = [Depth::Bits8, Depth::Bits16].map(|depth| parallaxes(baker, &map, depth));
+            print_codes(baker, name, a?, b?);
         }
     }
     Ok(())
