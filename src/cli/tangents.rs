@@ -97,7 +97,8 @@ pub struct Formula {
     pub precision: Option<Precision>,
 
     /// Take triangles that span more than half of the texture to have jumped from 1 to 0, as around a cylinder without
-    /// a seam. Only for meshes of which no triangle rightly spans that much: a plain square of two triangles does
+    /// a seam. Only for meshes of which no triangle rightly spans that much of u or of v, as a plain square of two
+    /// triangles does
     #[arg(long, help_heading = TANGENTS)]
     pub unwrap: bool,
 

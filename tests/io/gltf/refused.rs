@@ -189,7 +189,8 @@ fn files_that_are_cut_missing_or_something_else() {
 
     let beside = folder.file("m.gltf", &file.gltf("none.bin"));
     let missing = Model::read(&beside).unwrap_err().to_string();
-    assert!(missing.contains("none.bin") && missing.ends_with("; check how its path is written"), "{missing}");
+    assert!(missing.contains("m.gltf: it refers to \"none.bin\", which cannot be read: "), "{missing}");
+    assert!(missing.ends_with("; put the file where the model looks for it"), "{missing}");
     folder.file("none.bin", &file.bin[..10]);
     let expected = format!("buffers[0] has 10 of the {} bytes that it claims{EXPORT}", file.bin.len());
     assert_eq!(message(&beside), expected);
