@@ -130,7 +130,7 @@ fn join_buffers<'a>(document: &'a Document, edited: &mut Edited<'_>, added: Vec<
 
 /// Gives buffer views the buffers and the offsets that theirs moved to.
 fn move_views(json: &mut Value, places: &[(usize, usize)]) {
-    for view in json["bufferViews"].as_array_mut().into_iter().flatten() {
+    for view in json.get_mut("bufferViews").and_then(Value::as_array_mut).into_iter().flatten() {
         move_view(view, places);
         // Compressed data has a place of its own.
         for name in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {

@@ -243,8 +243,8 @@ fn what_gets_none_is_listed_with_the_reason() {
     let mut expected = [
         (1, "it is made of points"),
         (2, "it is made of lines"),
-        (3, "its material has no normal map"),
-        (4, "its material has no normal map"),
+        (3, "its material has no normal map (--all takes it too)"),
+        (4, "its material has no normal map (--all takes it too)"),
         (5, "it has no TEXCOORD_2, which its normal map uses"),
         (6, "it has no TEXCOORD_0, which its normal map uses"),
         (7, "it has no POSITION"),

@@ -238,7 +238,7 @@ fn what_cannot_be_written() {
         let model = Model::read(folder.file("m.glb", &file.glb())).unwrap();
         model.write(folder.path(name)).expect_err("this cannot be written").to_string()
     };
-    let expected = "m.obj: models are written as glTF; give it the extension .glb or .gltf";
+    let expected = "m.obj: models are written as glTF; give it the extension .glb or .gltf, or end the name of a folder in /";
     assert!(message(&file, "m.obj").ends_with(expected));
 
     std::fs::create_dir(folder.path("out")).unwrap();

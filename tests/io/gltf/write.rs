@@ -42,6 +42,18 @@ fn written(file: &Builder, tangents: &[Tangents]) -> (Value, Vec<u8>) {
     (json, bin)
 }
 
+#[test]
+fn nothing_is_added_where_nothing_changes() {
+    let folder = Folder::new();
+    let json = json!({ "asset": { "version": "2.0" } });
+    let path = folder.file("m.gltf", &serde_json::to_vec(&json).unwrap());
+    for name in ["n.glb", "n.gltf"] {
+        Model::read(&path).unwrap().write(folder.path(name)).unwrap();
+    }
+    assert_same_json(&json_of(&folder.path("n.gltf")), &json);
+    assert_same_json(&split_glb(&std::fs::read(folder.path("n.glb")).unwrap()).0, &json);
+}
+
 /// Compares JSON with the order of its fields.
 fn assert_same_json(got: &Value, expected: &Value) {
     assert_eq!(serde_json::to_string_pretty(got).unwrap(), serde_json::to_string_pretty(expected).unwrap());
