@@ -109,6 +109,9 @@ pub fn tangents_line(job: &TangentJob, outcome: &Outcome<ModelTangents>) -> Opti
         options.precision,
         options.convention,
     );
+    if model.had_tangents() > 0 {
+        line += &format!(", tangents of {} replaced", plural(model.had_tangents(), "primitive"));
+    }
     let made = model.normals_of_their_own();
     let unwrapped = if options.unwrap { total.jumps } else { 0 };
     let spanning = total.jumps - unwrapped;

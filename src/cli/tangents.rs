@@ -44,7 +44,8 @@ Draco and meshopt compression are refused: write the model without it first.
 The output is .glb or .gltf, by its name; from scan.obj a folder gets scan.glb.
 Beside model.gltf lies its buffer: model.bin if it was made of .glb or .obj,
 else model_tangents.bin with what is new. In another folder, the files that
-the model refers to are copied beside it. What changes in a glTF file: TANGENT;
+the model refers to are copied beside it; a .glb made of .gltf or .obj holds
+its images. What changes in a glTF file: TANGENT;
 NORMAL where it was missing or repaired; where vertices are split, copies in
 all attributes, and indices of 16 or 32 bits; strips and fans then become
 triangles. Tangents of morph targets are dropped. Old bytes may stay in the

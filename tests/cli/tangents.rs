@@ -224,6 +224,8 @@ fn every_option_reaches_the_library() {
     }
     // Without the option there are none.
     folder.run(&["tangents", "model.glb", "-o", "out.glb"]).ends(0);
+    let again = folder.run(&["tangents", "out.glb", "-o", "again.glb"]).ends(0);
+    again.line("exact, gl, tangents of 1 primitive replaced");
     let attributes = &Model::read(&folder, "out.glb").json["meshes"][0]["primitives"][0]["attributes"];
     assert_eq!((attributes["TANGENT"].is_u64(), &attributes["_BITANGENT"]), (true, &Value::Null));
 }
@@ -425,7 +427,7 @@ fn the_report_holds_every_count() {
     assert_eq!(take("total"), counts);
     let mut primitive = counts;
     primitive["name"] = "mesh 0 \"sheet\", primitive 0".into();
-    (primitive["shared_by"], primitive["has_normals"]) = (1.into(), true.into());
+    (primitive["shared_by"], primitive["had_tangents"], primitive["has_normals"]) = (1.into(), 0.into(), true.into());
     assert_eq!(primitives, json!([primitive]));
     let warnings = take("warnings");
     assert_eq!(warnings.as_array().unwrap().len(), 1, "{warnings}");
@@ -440,6 +442,8 @@ fn the_report_holds_every_count() {
             },
             "error": null, "backend": "cpu", "adapter": "reference, 1 thread", "reason": "asked for",
             "fallback": null, "bytes_in": bytes("model.glb"), "bytes_out": bytes("out.glb"),
+            "files_read": [{ "path": "model.glb", "bytes": bytes("model.glb") }],
+            "files_written": [{ "path": "out.glb", "bytes": bytes("out.glb") }],
         })
     );
 }
