@@ -142,7 +142,7 @@ pub(super) fn primitive_doubts(document: &Document, geometry: &Geometry, place: 
         format!("{name}: the tangents of its morph targets are dropped, for they were made for other tangents")
     });
     let count = Elements::count(document, geometry.indices.unwrap_or(geometry.position)).unwrap_or_default();
-    let rest = (geometry.mode == Mode::Triangles && count % 3 > 0)
+    let rest = (geometry.mode == Mode::Triangles && !count.is_multiple_of(3))
         .then(|| format!("{name}: its {count} corners are no whole triangles; the last {} are not used", count % 3));
     morphs.into_iter().chain(rest).collect()
 }
