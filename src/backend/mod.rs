@@ -20,6 +20,11 @@ pub(crate) trait Backend: Send + Sync {
     /// What runs there: `2 threads, avx512`, or the adapter.
     fn device(&self) -> String;
 
+    /// Threads for what an operation does on the host; `None`: those that all of the process share.
+    fn host_threads(&self) -> Option<&rayon::ThreadPool> {
+        None
+    }
+
     /// Rows of a band that suit this backend when rows are read and written meanwhile.
     fn band_rows(&self, row: RowBytes) -> usize;
 

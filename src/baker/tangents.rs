@@ -7,6 +7,9 @@ use crate::ops::tangents::{
     Faces, Fans, Shading, Surface, TangentMethod, TangentOptions, TangentPlan, Tangents, finish,
 };
 
+/// Triangles that take one thread less time than it takes to wake others: some 20 microseconds.
+const FEW: usize = 1 << 11;
+
 impl Baker {
     /// Computes a tangent for every vertex of a mesh, and splits vertices whose triangles need different ones.
     ///
@@ -45,6 +48,18 @@ impl Baker {
             return Err(Error::parameter("weld-seams", degrees, "from 0 to 90 degrees"));
         }
         adjacency.map_or(Ok(()), |adjacency| check_fits(adjacency, mesh))?;
+        match self.backend.host_threads().filter(|_| mesh.triangles().len() > FEW) {
+            Some(threads) => threads.install(|| self.checked_tangents(mesh, adjacency, options)),
+            None => self.checked_tangents(mesh, adjacency, options),
+        }
+    }
+
+    fn checked_tangents(
+        &self,
+        mesh: &Mesh,
+        adjacency: Option<&CornerAdjacency>,
+        options: &TangentOptions,
+    ) -> Result<(Ran, Tangents)> {
         let shading = Shading::new(mesh, options.missing_normals);
         let surface = Surface::new(&shading.mesh, &shading.normals, options.unwrap);
         let faces = Faces::of(&surface);

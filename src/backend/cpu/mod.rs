@@ -141,6 +141,10 @@ impl Backend for Cpu {
         format!("{threads} thread{plural}, {}", vectorised::instruction_set())
     }
 
+    fn host_threads(&self) -> Option<&ThreadPool> {
+        self.own_threads.as_ref()
+    }
+
     fn band_rows(&self, row: RowBytes) -> usize {
         (BAND_BYTES / (row.read + row.written)).max(4 * self.threads())
     }

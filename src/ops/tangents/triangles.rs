@@ -27,16 +27,22 @@ impl Triangles {
     /// Takes the triangles from `first`.
     #[inline(always)]
     pub fn gather(&mut self, surface: &Surface<'_>, first: usize) {
-        for (i, triangle) in surface.triangles[first..].iter().take(BLOCK).enumerate() {
-            for corner in 0..3 {
-                let position = surface.positions[triangle[corner] as usize];
-                for axis in 0..3 {
-                    self.positions[corner][axis][i] = position[axis];
-                }
-                let texcoord = surface.texcoords[triangle[corner] as usize];
-                for axis in 0..2 {
-                    self.texcoords[corner][axis][i] = texcoord[axis];
-                }
+        for (i, &triangle) in surface.triangles[first..].iter().take(BLOCK).enumerate() {
+            self.set(i, surface, triangle);
+        }
+    }
+
+    /// Takes a triangle of these vertices.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, surface: &Surface<'_>, triangle: [u32; 3]) {
+        for corner in 0..3 {
+            let position = surface.positions[triangle[corner] as usize];
+            for axis in 0..3 {
+                self.positions[corner][axis][i] = position[axis];
+            }
+            let texcoord = surface.texcoords[triangle[corner] as usize];
+            for axis in 0..2 {
+                self.texcoords[corner][axis][i] = texcoord[axis];
             }
         }
     }

@@ -1,88 +1,155 @@
-//! MikkTSpace's method: a share for each corner, and their sums.
+//! MikkTSpace's method: a share for each corner, in the order of the fans, and their sums.
+//!
+//! A triangle's frame is computed at each of its corners: that takes less time than to store and to fetch it.
 
 #![expect(clippy::needless_range_loop, reason = "an index for all planes of a lane")]
 
-use super::{fill_blocks, of_blocks};
+use super::fill_blocks;
 use crate::exact::{acos, acos_estimate, is_in_doubt};
 use crate::ops::tangents::{
-    BLOCK, Fans, Plane, Surface, TangentMethod, TangentPlan, Triangles, add, frame, mikktspace_area, mikktspace_cosine,
+    BLOCK, Fans, Plane, Surface, TangentMethod, TangentPlan, Triangles, frame, mikktspace_area, mikktspace_cosine,
     project, sign, times, unit,
 };
 
-/// What a corner adds to its fan's tangent, and in w its triangle's handedness.
-type Share = [f32; 4];
-
-/// Where the shares of a block are computed.
+/// Where the shares of a block of corners are computed.
 struct Room {
+    /// Those of each corner's triangle.
+    vertices: [[u32; 3]; BLOCK],
     triangles: Triangles,
-    normals: [[Plane; 3]; 3],
-    s: [Plane; 3],
-    signs: Plane,
+    /// Which corner of its triangle each is.
+    places: [u32; BLOCK],
+    /// The normals of the corners' fans.
+    normals: [Plane; 3],
     angles: Plane,
-    of_corner: [Share; BLOCK],
-    shares: [[Share; 3]; BLOCK],
+    /// What each corner adds to its fan's tangent.
+    shares: [Plane; 3],
+    /// The handedness of each corner's triangle.
+    signs: Plane,
 }
 
 impl Default for Room {
     fn default() -> Self {
         Self {
+            vertices: [[0; 3]; BLOCK],
             triangles: Triangles::default(),
-            normals: [[[0.0; BLOCK]; 3]; 3],
-            s: [[0.0; BLOCK]; 3],
-            signs: [0.0; BLOCK],
+            places: [0; BLOCK],
+            normals: [[0.0; BLOCK]; 3],
             angles: [0.0; BLOCK],
-            of_corner: [[0.0; 4]; BLOCK],
-            shares: [[[0.0; 4]; 3]; BLOCK],
+            shares: [[0.0; BLOCK]; 3],
+            signs: [0.0; BLOCK],
         }
     }
 }
 
 /// The tangent of each fan.
 pub(super) fn tangents(plan: &TangentPlan<'_>, tangents: &mut [[f32; 4]]) {
-    let TangentPlan { surface, fans, .. } = *plan;
-    let shares = of_blocks(surface.triangles.len(), |room: &mut Room, first| {
-        shares_of_block(surface, fans, first, room);
-        room.shares
-    });
-    let shares = shares.as_flattened().as_flattened();
-    fill_blocks(tangents, |first, tangents| tangents_of_sums(fans, shares, first, tangents));
+    fill_blocks(tangents, |first, tangents| tangents_of_block(plan.surface, plan.fans, first, tangents));
 }
 
 vectorised! {
-    fn shares_of_block(surface: &Surface<'_>, fans: &Fans<'_>, first: usize, room: &mut Room) {
-        let Room { triangles, normals, s, signs, angles, of_corner, shares } = room;
-        triangles.gather(surface, first);
-        gather_normals(surface, fans, first, normals);
-        directions(surface, triangles, s, signs);
-        for (corner, normals) in normals.iter().enumerate() {
-            cosines(surface.position_scale, triangles, corner, normals, angles);
-            cosines_to_angles(angles);
-            shares_of_corner(normals, s, angles, signs, of_corner);
-            for i in 0..BLOCK {
-                shares[i][corner] = of_corner[i];
+    /// The tangents of the fans from `first`.
+    fn tangents_of_block(surface: &Surface<'_>, fans: &Fans<'_>, first: usize, tangents: &mut [[f32; 4]]) {
+        let mut room = Room::default();
+        let mut sums: [Plane; 3] = [[0.0; BLOCK]; 3];
+        // Without a corner: as reference.rs has it.
+        let mut signs = [-1.0; BLOCK];
+        let offsets = &fans.corners.offsets()[first..=first + tangents.len()];
+        let (mut fan, end) = (0, offsets[tangents.len()] as usize);
+        let mut begin = offsets[0] as usize;
+        while begin < end {
+            let corners = &fans.corners.corners()[begin..end.min(begin + BLOCK)];
+            let mut fan_of = [0; BLOCK];
+            // A loop of its own, so short that the processor runs many turns at once: it waits for memory.
+            for (i, &corner) in corners.iter().enumerate() {
+                room.vertices[i] = surface.triangles[corner as usize / 3];
             }
+            for (i, &corner) in corners.iter().enumerate() {
+                while offsets[fan + 1] as usize <= begin + i {
+                    fan += 1;
+                }
+                fan_of[i] = fan;
+                room.set(i, surface, corner, surface.normals[fans.vertex(first + fan)]);
+            }
+            room.find_shares(surface);
+            for i in 0..corners.len() {
+                let fan = fan_of[i];
+                for axis in 0..3 {
+                    sums[axis][fan] += room.shares[axis][i];
+                }
+                if offsets[fan] as usize == begin + i {
+                    signs[fan] = room.signs[i];
+                }
+            }
+            begin += BLOCK;
+        }
+        for i in 0..BLOCK {
+            [sums[0][i], sums[1][i], sums[2][i]] = unit([sums[0][i], sums[1][i], sums[2][i]]);
+        }
+        for i in 0..tangents.len().min(BLOCK) {
+            tangents[i] = [sums[0][i], sums[1][i], sums[2][i], signs[i]];
         }
     }
 }
 
-/// The direction in which each triangle's u grows, and its handedness.
-#[inline(always)]
-fn directions(surface: &Surface<'_>, triangles: &Triangles, s: &mut [Plane; 3], signs: &mut Plane) {
-    for i in 0..BLOCK {
-        let edges = triangles.edges(surface, i);
-        signs[i] = sign(mikktspace_area([edges.d1, edges.d2]));
-        [s[0][i], s[1][i], s[2][i]] = frame(TangentMethod::Mikktspace, &edges).t;
+impl Room {
+    /// Takes a corner, whose vertices are known, of a fan with this normal.
+    #[inline(always)]
+    fn set(&mut self, i: usize, surface: &Surface<'_>, corner: u32, normal: [f32; 3]) {
+        self.triangles.set(i, surface, self.vertices[i]);
+        self.places[i] = corner % 3;
+        for axis in 0..3 {
+            self.normals[axis][i] = normal[axis];
+        }
     }
-}
 
-/// The cosine of the angle at a corner of each triangle.
-#[inline(always)]
-fn cosines(scale: f32, triangles: &Triangles, corner: usize, normals: &[Plane; 3], cosines: &mut Plane) {
-    let [next, previous] = [(corner + 1) % 3, (corner + 2) % 3];
-    for i in 0..BLOCK {
-        let position = |corner| times(scale, triangles.position(corner, i));
-        let n = [normals[0][i], normals[1][i], normals[2][i]];
-        cosines[i] = mikktspace_cosine(n, [position(corner), position(next), position(previous)]);
+    #[inline(always)]
+    fn find_shares(&mut self, surface: &Surface<'_>) {
+        self.find_cosines(surface.position_scale);
+        cosines_to_angles(&mut self.angles);
+        for i in 0..BLOCK {
+            let edges = self.triangles.edges(surface, i);
+            let s = frame(TangentMethod::Mikktspace, &edges).t;
+            let share = times(self.angles[i], unit(project(self.normal(i), s)));
+            [self.shares[0][i], self.shares[1][i], self.shares[2][i]] = share;
+            self.signs[i] = sign(mikktspace_area([edges.d1, edges.d2]));
+        }
+    }
+
+    /// The cosine of the angle at each corner.
+    #[inline(always)]
+    fn find_cosines(&mut self, scale: f32) {
+        for i in 0..BLOCK {
+            let position = |corner| times(scale, self.triangles.position(corner, i));
+            let (a, b, c) = (position(0), position(1), position(2));
+            let place = self.places[i];
+            let own = if place == 0 {
+                a
+            } else if place == 1 {
+                b
+            } else {
+                c
+            };
+            let next = if place == 0 {
+                b
+            } else if place == 1 {
+                c
+            } else {
+                a
+            };
+            let previous = if place == 0 {
+                c
+            } else if place == 1 {
+                a
+            } else {
+                b
+            };
+            self.angles[i] = mikktspace_cosine(self.normal(i), [own, next, previous]);
+        }
+    }
+
+    #[inline(always)]
+    fn normal(&self, i: usize) -> [f32; 3] {
+        [self.normals[0][i], self.normals[1][i], self.normals[2][i]]
     }
 }
 
@@ -99,67 +166,6 @@ fn cosines_to_angles(angles: &mut Plane) {
     if doubts > 0 {
         for i in 0..BLOCK {
             angles[i] = acos(cosines[i]);
-        }
-    }
-}
-
-/// What each triangle adds at a corner.
-#[inline(always)]
-fn shares_of_corner(normals: &[Plane; 3], s: &[Plane; 3], angles: &Plane, signs: &Plane, shares: &mut [Share; BLOCK]) {
-    let mut planes: [Plane; 3] = [[0.0; BLOCK]; 3];
-    for i in 0..BLOCK {
-        let n = [normals[0][i], normals[1][i], normals[2][i]];
-        let direction = unit(project(n, [s[0][i], s[1][i], s[2][i]]));
-        [planes[0][i], planes[1][i], planes[2][i]] = times(angles[i], direction);
-    }
-    for i in 0..BLOCK {
-        shares[i] = [planes[0][i], planes[1][i], planes[2][i], signs[i]];
-    }
-}
-
-/// The normal of each corner's fan, for the triangles from `first`.
-#[inline(always)]
-fn gather_normals(surface: &Surface<'_>, fans: &Fans<'_>, first: usize, normals: &mut [[Plane; 3]; 3]) {
-    for (i, triangle) in surface.triangles[first..].iter().take(BLOCK).enumerate() {
-        for corner in 0..3 {
-            let vertex = match &fans.owners {
-                Some(owners) => owners.vertices[owners.fans[3 * (first + i) + corner] as usize],
-                None => triangle[corner],
-            };
-            let normal = surface.normals[vertex as usize];
-            for axis in 0..3 {
-                normals[corner][axis][i] = normal[axis];
-            }
-        }
-    }
-}
-
-vectorised! {
-    fn tangents_of_sums(fans: &Fans<'_>, shares: &[Share], first: usize, tangents: &mut [[f32; 4]]) {
-        let mut planes: [Plane; 4] = [[0.0; BLOCK]; 4];
-        for i in 0..tangents.len().min(BLOCK) {
-            let row = fans.corners.row(first + i);
-            let mut sum = [0.0; 3];
-            for &corner in row {
-                let [x, y, z, _] = shares[corner as usize];
-                sum = add(sum, [x, y, z]);
-            }
-            for axis in 0..3 {
-                planes[axis][i] = sum[axis];
-            }
-            planes[3][i] = match row {
-                [corner, ..] => shares[*corner as usize][3],
-                [] => -1.0,
-            };
-        }
-        for i in 0..BLOCK {
-            let tangent = unit([planes[0][i], planes[1][i], planes[2][i]]);
-            for axis in 0..3 {
-                planes[axis][i] = tangent[axis];
-            }
-        }
-        for i in 0..tangents.len().min(BLOCK) {
-            tangents[i] = [planes[0][i], planes[1][i], planes[2][i], planes[3][i]];
         }
     }
 }

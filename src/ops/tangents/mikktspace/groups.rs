@@ -5,7 +5,7 @@
 use super::Fabric;
 use super::faces::Role;
 use super::rings::{NONE, Ring};
-use super::spokes::{Spoke, is_plainly_one_fan};
+use super::spokes::{Spoke, find_plain_fans};
 use super::subgroups::{Member, subgroups};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -77,13 +77,12 @@ impl Workspace {
         // A short loop, of which the processor runs many turns at once: it waits for memory.
         self.spokes.clear();
         self.spokes.extend(fabric.rows.corners()[corners].iter().map(|&corner| Spoke::of(fabric, corner)));
-        let mut rest = 0;
-        for (weld, ends) in welds.zip(offsets.windows(2)) {
-            let spokes = rest..rest + (ends[1] - ends[0]) as usize;
-            rest = spokes.end;
-            let is_exempt = fabric.last.as_ref().is_some_and(|last| last.concerns(weld as u32));
-            if is_exempt || !is_plainly_one_fan(&self.spokes[spokes], fabric.normal(weld as u32)) {
-                self.divide(fabric, weld as u32, divided);
+        let mut is_plain = [false; BLOCK];
+        find_plain_fans(fabric, welds.start as u32, offsets, &self.spokes, &mut is_plain);
+        for (weld, is_plain) in (welds.start as u32..welds.end as u32).zip(is_plain) {
+            let is_exempt = fabric.last.as_ref().is_some_and(|last| last.concerns(weld));
+            if is_exempt || !is_plain {
+                self.divide(fabric, weld, divided);
             }
         }
     }
@@ -123,11 +122,11 @@ impl Workspace {
     /// Whether all corners are directed, in one group and far from opposite.
     fn is_one_fan(&self, fabric: &Fabric<'_>, weld: u32, row: &[u32]) -> bool {
         let face = |corner: u32| &fabric.faces[corner as usize / 3];
-        let n = fabric.normal(weld);
-        self.count == 1
-            && self.ring.len() == row.len()
-            && self.groups.iter().all(|&group| group == 0)
-            && row.iter().all(|&corner| face(corner).role == Role::Directed && face(corner).agrees(face(row[0]), n))
+        let agree = || {
+            let first = face(row[0]).projected(fabric.normal(weld));
+            row.iter().all(|&corner| face(corner).role == Role::Directed && face(corner).agrees(&first))
+        };
+        self.count == 1 && self.ring.len() == row.len() && self.groups.iter().all(|&group| group == 0) && agree()
     }
 
     fn add_fans(&mut self, fabric: &Fabric<'_>, weld: u32, row: &[u32], divided: &mut Divided) {
@@ -167,7 +166,8 @@ fn add_group(fabric: &Fabric<'_>, weld: u32, members: &[Member], divided: &mut D
     let face = |corner: u32| &fabric.faces[corner as usize / 3];
     let directed = || members.iter().filter(|member| member.is_directed).map(|member| member.corner);
     let Some(first) = directed().next() else { return };
-    if directed().all(|corner| face(corner).agrees(face(first), n)) {
+    let projected = face(first).projected(n);
+    if directed().all(|corner| face(corner).agrees(&projected)) {
         let fan = divided.add(weld, directed());
         divided.members.extend(members.iter().map(|member| (member.corner, fan)));
     } else {

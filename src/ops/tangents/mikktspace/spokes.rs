@@ -21,11 +21,27 @@ impl Spoke {
     }
 }
 
+vectorised! {
+    /// Which of the welds from `first` are plainly one fan; their spokes lie between the offsets, less the first one.
+    pub(super) fn find_plain_fans(
+        fabric: &Fabric<'_>,
+        first: u32,
+        offsets: &[u32],
+        spokes: &[Spoke],
+        is_plain: &mut [bool],
+    ) {
+        for ((weld, ends), is_plain) in (first..).zip(offsets.windows(2)).zip(is_plain) {
+            let spokes = &spokes[(ends[0] - offsets[0]) as usize..(ends[1] - offsets[0]) as usize];
+            *is_plain = is_plainly_one_fan(spokes, fabric.normal(weld));
+        }
+    }
+}
+
 /// Whether all corners at a weld are directed, far from opposite and linked to one group, each edge to one other.
 ///
 /// `false` may also mean that it takes more to tell.
 #[inline(always)]
-pub(super) fn is_plainly_one_fan(spokes: &[Spoke], n: [f32; 3]) -> bool {
+fn is_plainly_one_fan(spokes: &[Spoke], n: [f32; 3]) -> bool {
     match spokes.len() {
         0 => true,
         1..=8 => is_one_fan::<8>(spokes, n),
@@ -37,13 +53,14 @@ pub(super) fn is_plainly_one_fan(spokes: &[Spoke], n: [f32; 3]) -> bool {
 #[inline(always)]
 fn is_one_fan<const LANES: usize>(spokes: &[Spoke], n: [f32; 3]) -> bool {
     let first = spokes[0].face;
+    let projected = first.projected(n);
     // No weld has these numbers.
     let (mut to, mut from) = ([u32::MAX; LANES], [u32::MAX - 1; LANES]);
     let mut agrees = first.role == Role::Directed;
     for ((spoke, to), from) in spokes.iter().zip(&mut to).zip(&mut from) {
         (*to, *from) = (spoke.to, spoke.from);
         let Face { role, is_positive, .. } = spoke.face;
-        agrees &= role == Role::Directed && is_positive == first.is_positive && spoke.face.agrees(&first, n);
+        agrees &= (role == Role::Directed) & (is_positive == first.is_positive) & spoke.face.agrees(&projected);
     }
     agrees && is_one_chain(&to, &from, spokes.len())
 }
