@@ -95,7 +95,7 @@
 //!   bit of the result, but meshes of 1e20 and of 1e-20 have one, where the reference overflows or drops them;
 //! - faces of four corners are triangles here, however they were split; the reference splits a square by itself;
 //! - normals that are zero or longer or shorter than one by more than 1 % are repaired first; others are taken as they
-//!   are.
+//!   are, as the reference takes all.
 //!
 //! Four components are what glTF and engines read. [`Tangents::with_sign_in_lowest_bit`] packs the sign into three, as
 //! FGED2 suggests (for programs only: no file format has it), and [`Tangents::bitangents`] is eq. 7.40.
@@ -138,7 +138,8 @@
 //! | u that jumps from 1 to 0 across shared vertices (a cylinder) | taken at its word, or [`TangentOptions::unwrap`] |
 //! | no normals | [`MissingNormals`]: each triangle's own, which splits its vertices, or smooth ones |
 //! | a zero among the normals | the smooth normal of the triangles at that position; (0, 0, 1) if they have no area |
-//! | a normal whose length is off by more than 1 % | normalised |
+//! | a normal whose length is off by more than 1 % | normalised, and counted |
+//! | by less | `Mikktspace`: taken as it is, as the reference does; else normalised |
 //! | no triangles, no vertices | no tangents |
 
 #[macro_use]

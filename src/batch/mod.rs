@@ -47,6 +47,7 @@ pub use report::{
     FileReport, FileResult, JsonFile, Options, Outputs, Report, RunReport, SizeReport, Totals, UsedScale,
 };
 pub use tangents::{
-    LeftOutReport, ModelTangents, ModelTangentsReport, PrimitiveTangents, TangentJob, TangentOptionsReport,
+    LeftOutReport, ModelFileReport, ModelTangents, ModelTangentsReport, PrimitiveTangents, TangentJob,
+    TangentOptionsReport,
 };
 pub use targets::Files;

@@ -1,17 +1,16 @@
 //! A model whose meshes get tangents.
 
-use super::job::create_folder_of;
 use super::outcome::Outcome;
 use super::report::{RunReport, as_text};
 use super::targets::{self, Files};
 use crate::baker::{Baker, Ran};
-use crate::error::Result;
-use crate::io::{LeftOut, Model, ModelReadOptions};
+use crate::error::{Error, Result};
+use crate::io::{LeftOut, Model, ModelFile, ModelFiles, ModelReadOptions, Primitive};
 use crate::ops::tangents::{MissingNormals, TangentOptions, TangentReport};
 use crate::stream::Monitor;
 use serde::Serialize;
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -41,6 +40,8 @@ pub struct ModelTangents {
     pub primitives: Vec<PrimitiveTangents>,
     /// Those that did not, and why.
     pub left_out: Vec<LeftOut>,
+    /// The files that were read and written: images and buffers, too.
+    pub files: ModelFiles,
     /// What computing took, without files.
     pub computing: Duration,
 }
@@ -52,6 +53,8 @@ pub struct PrimitiveTangents {
     pub name: String,
     /// How many primitives of the file are the same, and share the result.
     pub shared_by: usize,
+    /// How many of them had tangents, which were replaced.
+    pub had_tangents: usize,
     /// Whether it had normals of its own.
     pub has_normals: bool,
     /// What was found in it.
@@ -63,6 +66,17 @@ impl ModelTangents {
     /// The sum over the primitives.
     pub fn total(&self) -> TangentReport {
         self.primitives.iter().fold(TangentReport::default(), |total, primitive| sum(total, primitive.found))
+    }
+
+    /// Vertices, of the meshes as they were read, that got normals because their mesh had none.
+    pub fn normals_of_their_own(&self) -> usize {
+        let without = self.primitives.iter().filter(|primitive| !primitive.has_normals);
+        without.map(|primitive| primitive.found.normals_made).sum()
+    }
+
+    /// How many primitives of the file had tangents, which were replaced.
+    pub fn had_tangents(&self) -> usize {
+        self.primitives.iter().map(|primitive| primitive.had_tangents).sum()
     }
 
     /// How many primitives of the file have tangents now.
@@ -103,19 +117,26 @@ impl TangentJob {
     /// input is refused.
     pub fn run(&self, monitor: &Monitor) -> Outcome<ModelTangents> {
         let files = self.files();
+        if self.input.is_dir() {
+            return Outcome::unopened(a_folder(&self.input));
+        }
         if let Some(refusal) = targets::refusals(std::slice::from_ref(&files)).into_iter().flatten().next() {
             return Outcome::unopened(refusal);
         }
-        Outcome::of(&files, |warnings| {
+        let mut outcome = Outcome::of(&files, |warnings| {
             Model::check_output(&self.output)?;
             let mut model = Model::read_with(&self.input, &self.read)?;
-            let done = self.compute(&mut model, monitor)?;
-            create_folder_of(&self.output)?;
-            model.write(&self.output)?;
+            let mut done = self.compute(&mut model, monitor)?;
+            done.files = model.write_unless_cancelled(&self.output, monitor)?;
             warnings.extend_from_slice(model.warnings());
-            warnings.extend(self::warnings(&done, self.options.missing_normals));
+            warnings.extend(self::warnings(&done, &self.options));
             Ok(done)
-        })
+        });
+        if let Ok(done) = &outcome.result {
+            let sum = |files: &[ModelFile]| files.iter().map(|file| file.bytes).sum();
+            (outcome.bytes_in, outcome.bytes_out) = (sum(&done.files.read), sum(&done.files.written));
+        }
+        outcome
     }
 
     /// Computes the tangents of one primitive after the other; each is shared out among the threads.
@@ -129,20 +150,29 @@ impl TangentJob {
             done.computing += start.elapsed();
             // A device that failed once is worth telling, whatever ran the last primitive.
             done.ran = done.ran.filter(|ran| ran.fallback.is_some()).or(Some(ran));
-            let (name, shared_by) = (primitive.name, primitive.shared_by);
-            let has_normals = mesh.normals().is_some();
-            done.primitives.push(PrimitiveTangents { name, shared_by, has_normals, found: tangents.report });
+            let Primitive { name, shared_by, had_tangents } = primitive;
+            let (has_normals, found) = (mesh.normals().is_some(), tangents.report);
+            done.primitives.push(PrimitiveTangents { name, shared_by, had_tangents, has_normals, found });
             let bitangents = self.bitangents.then(|| tangents.bitangents(&mesh)).transpose()?;
             model.set_tangents(index, tangents)?;
             bitangents.map_or(Ok(()), |bitangents| model.set_bitangents(index, bitangents))?;
         }
-        monitor.check()?;
         Ok(done)
     }
 }
 
+/// One model at a time.
+fn a_folder(path: &Path) -> Error {
+    let folder = path.display();
+    let remedy = format!(
+        "name a model file in it; several go one by one: \
+         for model in {folder}/*.glb; do texbake tangents \"$model\" -o out/; done"
+    );
+    Error::file(path, "it is a folder", remedy)
+}
+
 /// What a user should know about the meshes.
-fn warnings(done: &ModelTangents, missing_normals: MissingNormals) -> Vec<String> {
+fn warnings(done: &ModelTangents, options: &TangentOptions) -> Vec<String> {
     let counted = |count: &dyn Fn(&PrimitiveTangents) -> usize| {
         let concerned = || done.primitives.iter().filter(|primitive| count(primitive) > 0);
         let total: usize = concerned().map(count).sum();
@@ -152,13 +182,32 @@ fn warnings(done: &ModelTangents, missing_normals: MissingNormals) -> Vec<String
     let made = |has_normals: bool| {
         counted(&|primitive| if primitive.has_normals == has_normals { primitive.found.normals_made } else { 0 })
     };
-    let undirected = counted(&|primitive| primitive.found.undirected).map(|places| {
+    // A triangle that rightly spans more than half of the texture has no area left when it is unwrapped.
+    let flattened = |primitive: &PrimitiveTangents| options.unwrap && primitive.found.jumps > 0;
+    let undirected = |by_unwrap: bool| {
+        counted(&|primitive| if flattened(primitive) == by_unwrap { primitive.found.undirected } else { 0 })
+    };
+    const MADE_UP: &str = "they got any tangent at a right angle to the normal, and a normal map does not fit there";
+    let unwrapped = undirected(true).map(|places| {
         format!(
-            "undirected vertices: {places}: their triangles have no area in the texture, or their tangents cancel; \
-             they got any tangent at a right angle to the normal, and a normal map does not fit there"
+            "undirected vertices: {places}: --unwrap took triangles that span more than half of the texture to have \
+             jumped from 1 to 0; if they span it rightly, leave --unwrap out; {MADE_UP}"
         )
     });
-    let remade = match missing_normals {
+    let undirected = undirected(false).map(|places| {
+        format!(
+            "undirected vertices: {places}: their triangles have no area in the texture, or their tangents cancel; \
+             {MADE_UP}"
+        )
+    });
+    let jumps = counted(&|primitive| match primitive.found {
+        TangentReport { jumps, mirrored: 1.., .. } if !options.unwrap => jumps,
+        _ => 0,
+    });
+    let jumps = jumps.map(|places| {
+        format!("triangles that span more than half of the texture: {places}: if u jumps from 1 to 0 there, --unwrap")
+    });
+    let remade = match options.missing_normals {
         MissingNormals::Flat => "each triangle got its own, as glTF prescribes; --normals smooth rounds the edges",
         MissingNormals::Smooth => "they got smooth ones",
     };
@@ -173,7 +222,12 @@ fn warnings(done: &ModelTangents, missing_normals: MissingNormals) -> Vec<String
         format!("left out: {}: {reason}", listed(&names))
     });
     let nothing = done.primitives.is_empty().then(|| "no primitive got tangents".to_owned());
-    [undirected, missing, zero, normalised].into_iter().flatten().chain(left_out).chain(nothing).collect()
+    [undirected, unwrapped, jumps, missing, zero, normalised]
+        .into_iter()
+        .flatten()
+        .chain(left_out)
+        .chain(nothing)
+        .collect()
 }
 
 /// Names, of many only the first.
@@ -205,11 +259,25 @@ pub struct ModelTangentsReport {
     pub primitives: Vec<PrimitiveTangents>,
     /// Those that did not.
     pub left_out: Vec<LeftOutReport>,
+    /// The files that were read: the model, its buffers, and the images that were copied or embedded.
+    pub files_read: Vec<ModelFileReport>,
+    /// The files of the new model, itself last.
+    pub files_written: Vec<ModelFileReport>,
     /// What computing took, without files; null if it did not end well.
     pub compute_milliseconds: Option<f64>,
     /// How it went.
     #[serde(flatten)]
     pub run: RunReport,
+}
+
+/// A file of a model.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct ModelFileReport {
+    /// Where it is.
+    #[serde(serialize_with = "as_text")]
+    pub path: PathBuf,
+    /// Its size in bytes.
+    pub bytes: u64,
 }
 
 /// A primitive that got no tangents.
@@ -250,6 +318,10 @@ impl ModelTangentsReport {
         let done = outcome.result.as_ref().ok();
         let ran = done.and_then(|model| model.ran.as_ref());
         let left_out = done.iter().flat_map(|model| &model.left_out);
+        let reported = |files: &[ModelFile]| -> Vec<ModelFileReport> {
+            files.iter().map(|file| ModelFileReport { path: file.path.clone(), bytes: file.bytes }).collect()
+        };
+        let files = done.map(|model| model.files.clone()).unwrap_or_default();
         let TangentOptions { method, convention, missing_normals, unwrap, weld_seams, precision } = job.options;
         Self {
             version: env!("CARGO_PKG_VERSION"),
@@ -271,8 +343,36 @@ impl ModelTangentsReport {
             left_out: left_out
                 .map(|LeftOut { name, reason }| LeftOutReport { name: name.clone(), reason: reason.clone() })
                 .collect(),
+            files_read: reported(&files.read),
+            files_written: reported(&files.written),
             compute_milliseconds: done.map(|model| (model.computing.as_secs_f64() * 1e6).round() / 1e3),
             run: RunReport::new(outcome, ran, &job.baker, job.failure(outcome)),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_interrupt_before_the_file_has_its_name_leaves_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let input = folder.path().join("empty.gltf");
+        std::fs::write(&input, r#"{ "asset": { "version": "2.0" } }"#).unwrap();
+        let job = TangentJob {
+            input,
+            output: folder.path().join("out/m.glb"),
+            options: TangentOptions::default(),
+            bitangents: false,
+            read: ModelReadOptions::default(),
+            baker: Arc::new(Baker::reference()),
+        };
+        // There is nothing to compute, so nothing but writing can notice it.
+        let interrupted = Monitor::default();
+        interrupted.cancel();
+        assert!(matches!(job.run(&interrupted).result, Err(Error::Cancelled)));
+        assert!(!folder.path().join("out").exists());
+        assert!(job.run(&Monitor::default()).result.is_ok());
     }
 }

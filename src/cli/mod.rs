@@ -44,7 +44,7 @@ pub fn run() -> ExitCode {
     exit.into()
 }
 
-/// A monitor that an interrupt cancels: files that are being baked end cleanly. A second interrupt ends the program.
+/// A monitor that an interrupt cancels: files that are being written end cleanly. A second interrupt ends the program.
 fn interruptible() -> Arc<Monitor> {
     let monitor = Arc::new(Monitor::default());
     let watched = monitor.clone();
@@ -53,7 +53,7 @@ fn interruptible() -> Arc<Monitor> {
             std::process::exit(Exit::Interrupted.code().into());
         }
         watched.cancel();
-        print::say("interrupted: files that are being baked are stopped; interrupt again to end at once");
+        print::say("interrupted: what is being written is dropped; interrupt again to end at once");
     };
     if let Err(error) = ctrlc::set_handler(stop) {
         print::say(format_args!("warning: an interrupt will not end cleanly: {error}"));

@@ -109,27 +109,50 @@ pub fn tangents_line(job: &TangentJob, outcome: &Outcome<ModelTangents>) -> Opti
         options.precision,
         options.convention,
     );
+    if model.had_tangents() > 0 {
+        line += &format!(", tangents of {} replaced", plural(model.had_tangents(), "primitive"));
+    }
+    let made = model.normals_of_their_own();
+    let unwrapped = if options.unwrap { total.jumps } else { 0 };
+    let spanning = total.jumps - unwrapped;
     for (count, what) in [
         (total.copies, "made by splits"),
         (total.mirrored, "between mirrored halves"),
         (total.undirected, "undirected"),
         (total.welded, "welded"),
-        (total.normals_made + total.normals_normalised, "with repaired normals"),
+        (made, "with made normals"),
+        (total.normals_made - made + total.normals_normalised, "with repaired normals"),
     ] {
         if count > 0 {
             line += &format!(", {count} {what}");
         }
     }
+    for (count, what) in [
+        (unwrapped, "unwrapped"),
+        (spanning, "across more than half of the texture"),
+        (total.without_area, "without area"),
+        (total.without_texture_area, "without area in the texture"),
+    ] {
+        if count > 0 {
+            line += &format!(", {} {what}", plural(count, "triangle"));
+        }
+    }
     if let Some(ran) = &model.ran {
         let seconds = model.computing.as_secs_f64();
         let rate = total.triangles as f64 / 1e6 / seconds.max(1e-9);
-        let milliseconds = seconds * 1e3;
         line += &format!("; {} ({})", ran.name(), job.baker.reason());
-        line += &format!("; {milliseconds:.1} ms, {rate:.1} Mtriangle/s");
+        line += &format!("; {} ms, {} Mtriangle/s", three_digits(seconds * 1e3), three_digits(rate));
     }
     let (all, bytes_in, bytes_out) = (milliseconds(outcome), bytes(outcome.bytes_in), bytes(outcome.bytes_out));
     line += &format!("; {all} with files, {bytes_in} in, {bytes_out} out");
     Some(line)
+}
+
+/// A number above zero with at least three digits that tell something: `1234`, `12.3`, `0.0123`.
+fn three_digits(number: f64) -> String {
+    let before_the_point = number.max(1e-9).log10().floor() as i32 + 1;
+    let decimals = (3 - before_the_point).clamp(0, 9) as usize;
+    format!("{number:.decimals$}")
 }
 
 /// `1 vertex`, `2 vertices`.
@@ -274,6 +297,12 @@ fn bytes(count: u64) -> String {
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn numbers_have_three_digits() {
+        let numbers = [1234.0, 123.4, 12.34, 1.234, 0.001_234].map(super::three_digits);
+        assert_eq!(numbers, ["1234", "123", "12.3", "1.23", "0.00123"]);
+    }
+
     #[test]
     fn byte_counts_are_decimal() {
         assert_eq!(["999 B", "1.0 kB", "12.3 MB"].map(str::to_owned), [999, 1000, 12_345_678].map(super::bytes));

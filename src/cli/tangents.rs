@@ -32,8 +32,27 @@ green points up it, so with --convention gl the bitangent points against v.
 
 A vertex without a direction (its triangles have no area in the texture, or
 their tangents cancel) gets any tangent at a right angle to its normal; such
-vertices are counted and reported. Everything else in a glTF file stays as it
-was. The faces of an OBJ become triangles first, and its output is .glb.
+vertices are counted and reported.
+
+Primitives get tangents if their material has a normal map: its own, or else
+that of its clearcoat or its anisotropy, or else one of its variants'
+(KHR_materials_variants). KHR_texture_transform is applied. With --all every
+primitive with texture coordinates gets them; without, a model that has no
+normal map is written as it was, with a warning, and the exit status is 0.
+Draco and meshopt compression are refused: write the model without it first.
+
+The output is .glb or .gltf, by its name; from scan.obj a folder gets scan.glb.
+Beside model.gltf lies its buffer: model.bin if it was made of .glb or .obj,
+else model_tangents.bin with what is new. In another folder, the files that
+the model refers to are copied beside it; a .glb made of .gltf or .obj holds
+its images. What changes in a glTF file: TANGENT;
+NORMAL where it was missing or repaired; where vertices are split, copies in
+all attributes, and indices of 16 or 32 bits; strips and fans then become
+triangles. Tangents of morph targets are dropped. Old bytes may stay in the
+buffer. The faces of an OBJ become triangles first.
+
+One model at a time; several in a shell:
+for model in *.glb; do texbake tangents \"$model\" -o out/; done
 
 Examples:
   texbake tangents model.glb -o model_t.glb
@@ -46,7 +65,7 @@ pub struct TangentsArguments {
     pub input: PathBuf,
 
     /// Model with tangents: .glb or .gltf, missing folders are made; or a folder, one that exists or whose name ends in
-    /// /, for a file of the same name
+    /// /, for a file of the same name (.glb if the model is .obj)
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
 
@@ -78,14 +97,15 @@ pub struct Formula {
     #[arg(long, value_parser = choice::<Precision>(Precision::NAMES), help_heading = TANGENTS)]
     pub precision: Option<Precision>,
 
-    /// Take texture coordinates that are further apart than half the texture along an edge to have jumped from 1 to 0
-    /// there, as around a cylinder without a seam
+    /// Take triangles that span more than half of the texture to have jumped from 1 to 0, as around a cylinder without
+    /// a seam. Only for meshes of which no triangle rightly spans that much of u or of v, as a plain square of two
+    /// triangles does
     #[arg(long, help_heading = TANGENTS)]
     pub unwrap: bool,
 
-    /// Make tangents of vertices at one position equal where normal and handedness are the same and the directions at
-    /// most ANGLE degrees apart, from 0 to 90
-    #[arg(long, value_name = "ANGLE", value_parser = degrees, help_heading = TANGENTS)]
+    /// Make tangents equal that are at most ANGLE degrees apart, from 0 to 90, of vertices of one primitive with the
+    /// very same position and normal, to the bit, and the same handedness
+    #[arg(long, value_name = "ANGLE", value_parser = degrees, allow_hyphen_values = true, help_heading = TANGENTS)]
     pub weld_seams: Option<f32>,
 
     /// Also write the bitangents, as the attribute _BITANGENT; no reader needs them

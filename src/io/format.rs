@@ -31,6 +31,8 @@ pub const INPUT_EXTENSIONS: [&str; 12] =
 
 const KNOWN_INPUTS: &str =
     "texbake reads PNG, TIFF, EXR, TGA, BMP, JPEG and WebP, and headerless height maps with --raw";
+const FOR_MODELS: &str = "models are for texbake tangents; the other commands take maps";
+const MODEL_EXTENSIONS: [&str; 3] = ["glb", "gltf", "obj"];
 const KNOWN_OUTPUTS: &str = "texbake writes .png, .tif, .tiff and .exr";
 
 impl FileFormat {
@@ -43,7 +45,11 @@ impl FileFormat {
             return Err(Error::file(path, "the file is empty", "copy or export it again"));
         }
         let format = Self::of_bytes(&first).or_else(|| (extension(path) == "tga").then_some(TGA));
-        format.ok_or_else(|| Error::file(path, "this is no format that texbake knows", KNOWN_INPUTS))
+        format.ok_or_else(|| {
+            let is_model = first.starts_with(b"glTF") || MODEL_EXTENSIONS.contains(&extension(path).as_str());
+            let remedy = if is_model { format!("{KNOWN_INPUTS}; {FOR_MODELS}") } else { KNOWN_INPUTS.to_owned() };
+            Error::file(path, "this is no format that texbake knows", remedy)
+        })
     }
 
     fn of_bytes(first: &[u8]) -> Option<Self> {

@@ -25,7 +25,7 @@ mod tiff;
 
 pub use channel::Channel;
 pub use format::{INPUT_EXTENSIONS, default_format, default_parallax_format};
-pub use gltf::{LeftOut, Model, ModelReadOptions, ModelReport, Primitive};
+pub use gltf::{LeftOut, Model, ModelFile, ModelFiles, ModelReadOptions, ModelReport, Primitive};
 pub use raw::{RawKind, RawLayout};
 
 use crate::error::Result;

@@ -2,7 +2,7 @@
 //!
 //! Of materials, names, diffuse colours and normal maps are kept.
 
-use super::gltf::{Buffer, Document, Origin, Uri, read_file, uri_of_path};
+use super::gltf::{Buffer, Document, ModelFile, Origin, Uri, read_file, uri_of_path};
 use crate::error::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::io::Cursor;
@@ -14,6 +14,7 @@ const OPTIONS: tobj::LoadOptions =
 
 pub(super) fn read(path: &Path, max_bytes: u64) -> Result<Document> {
     let bytes = read_file(path, max_bytes)?;
+    let files = vec![ModelFile::new(path, &bytes)];
     let materials_of = |name: &Path| {
         let folder = path.parent().unwrap_or("".as_ref());
         let bytes = read_file(&folder.join(name), max_bytes).map_err(|_| tobj::LoadError::OpenFileFailed)?;
@@ -43,7 +44,7 @@ pub(super) fn read(path: &Path, max_bytes: u64) -> Result<Document> {
     });
     add_materials(&mut json, path, &materials);
     let buffers = vec![Buffer { bytes: this.bytes, origin: Origin::Inside }];
-    Ok(Document { path: path.into(), json, buffers, more_chunks: Vec::new(), max_bytes })
+    Ok(Document { path: path.into(), json, buffers, is_glb: false, files, more_chunks: Vec::new(), max_bytes })
 }
 
 #[derive(Default)]

@@ -32,7 +32,7 @@ impl Mesh {
     /// [`Error::Parameter`] if there are more or fewer texture coordinates than positions, an index is out of range,
     /// or there are more than 2^30 vertices or 2^29 triangles; [`Error::Vertex`] for a number that is NaN or infinite.
     pub fn new(positions: Vec<[f32; 3]>, texcoords: Vec<[f32; 2]>, triangles: Vec<[u32; 3]>) -> Result<Self> {
-        check_count("texture coordinates", texcoords.len(), positions.len())?;
+        check_count("number of texture coordinates", texcoords.len(), positions.len())?;
         check_finite("position", &positions)?;
         check_finite("texture coordinate", &texcoords)?;
         // Vertices, corners and copies of vertices are all counted in 32 bits.
@@ -43,10 +43,12 @@ impl Mesh {
                 return Err(Error::parameter(parameter, count, format!("at most {greatest}")));
             }
         }
-        let in_range = |triangle: &[u32; 3]| triangle.iter().all(|&index| (index as usize) < positions.len());
-        if let Some(triangle) = triangles.iter().position(|triangle| !in_range(triangle)) {
+        let in_range = |index: &u32| (*index as usize) < positions.len();
+        if let Some(triangle) = triangles.iter().position(|triangle| !triangle.iter().all(in_range)) {
+            let corners = triangles[triangle];
+            let wrong = corners.into_iter().find(|index| !in_range(index)).unwrap_or_default();
             let range = format!("below {}, the number of vertices", positions.len());
-            return Err(Error::parameter("index", format!("{:?} in triangle {triangle}", triangles[triangle]), range));
+            return Err(Error::parameter("index", format!("{wrong} (triangle {triangle}: {corners:?})"), range));
         }
         Ok(Self { positions, normals: None, texcoords, triangles })
     }
@@ -57,7 +59,7 @@ impl Mesh {
     /// [`Error::Parameter`] if there are more or fewer normals than positions; [`Error::Vertex`] for a number that is
     /// NaN or infinite.
     pub fn with_normals(mut self, normals: Vec<[f32; 3]>) -> Result<Self> {
-        check_count("normals", normals.len(), self.positions.len())?;
+        check_count("number of normals", normals.len(), self.positions.len())?;
         check_finite("normal", &normals)?;
         self.normals = Some(normals);
         Ok(self)

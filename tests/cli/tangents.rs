@@ -220,9 +220,12 @@ fn every_option_reaches_the_library() {
         let bitangents = model.numbers(&model.json["meshes"][0]["primitives"][0]["attributes"]["_BITANGENT"], "VEC3");
         assert_eq!(bits(&bitangents), bits(expected.bitangents(&mesh).unwrap().as_flattened()));
         run.says("warning: vertices without a normal: 42 (mesh 0 \"sheet\", primitive 0): ", &[]);
+        run.says("out.glb: 1 of 1 primitive", &[", 42 with made normals; "]);
     }
     // Without the option there are none.
     folder.run(&["tangents", "model.glb", "-o", "out.glb"]).ends(0);
+    let again = folder.run(&["tangents", "out.glb", "-o", "again.glb"]).ends(0);
+    again.line("exact, gl, tangents of 1 primitive replaced");
     let attributes = &Model::read(&folder, "out.glb").json["meshes"][0]["primitives"][0]["attributes"];
     assert_eq!((attributes["TANGENT"].is_u64(), &attributes["_BITANGENT"]), (true, &Value::Null));
 }
@@ -320,7 +323,10 @@ fn what_is_wrong_with_a_mesh_is_said_and_counted() {
     run.says("warning: undirected vertices: 3 (mesh 0 \"speck\", primitive 0): ", &["no area in the texture"]);
     run.says("warning: vertices whose normal is zero: 1 (mesh 0 \"speck\", primitive 0): ", &["smooth"]);
     run.says("warning: vertices whose normal is not of unit length: 1 (mesh 0 ", &["normalised"]);
-    run.says("out.glb: 1 of 1 primitive, 3 vertices, 1 triangle, ", &["3 undirected, 2 with repaired normals"]);
+    run.says(
+        "out.glb: 1 of 1 primitive, 3 vertices, 1 triangle, ",
+        &["3 undirected, 2 with repaired normals, 1 triangle without area in the texture; "],
+    );
     let report = folder.json("r.json");
     let total = &report["total"];
     assert_eq!([&total["undirected"], &total["normals_made"], &total["normals_normalised"]], [3, 1, 1]);
@@ -328,6 +334,69 @@ fn what_is_wrong_with_a_mesh_is_said_and_counted() {
     let model = Model::read(&folder, "out.glb");
     let tangents = model.numbers(&model.json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"], "VEC4");
     assert!(tangents.chunks(4).all(|t| t[..3] == [1.0, 0.0, 0.0]), "{tangents:?}");
+}
+
+/// Squares side by side around a cylinder, of which the last one shares the vertices of the first; they are lower
+/// than half of the texture.
+fn cylinder(squares: u32) -> Mesh {
+    let vertices = || (0..squares).flat_map(|i| [(i, 0.0), (i, 1.0)]);
+    let around = |i: u32| (i as f32 * std::f32::consts::TAU / squares as f32).sin_cos();
+    let positions = vertices().map(|(i, z)| [around(i).1, around(i).0, z]).collect();
+    let texcoords = vertices().map(|(i, z)| [i as f32 / squares as f32, 0.4 * (1.0 - z)]).collect();
+    let normals = vertices().map(|(i, _)| [around(i).1, around(i).0, 0.0]).collect();
+    let square = |i: u32| {
+        let [a, b, c, d] = [2 * i, 2 * ((i + 1) % squares), 2 * ((i + 1) % squares) + 1, 2 * i + 1];
+        [[a, b, c], [a, c, d]]
+    };
+    Mesh::new(positions, texcoords, (0..squares).flat_map(square).collect()).unwrap().with_normals(normals).unwrap()
+}
+
+#[test]
+fn a_jump_from_1_to_0_is_hinted_at() {
+    let folder = Folder::new();
+    folder.file("pipe.glb", Model::new().with("pipe", &cylinder(12), 0).glb());
+    let run = folder.run(&["tangents", "pipe.glb", "-o", "out.glb"]).ends(0);
+    run.says(
+        "warning: triangles that span more than half of the texture: 2 (mesh 0 \"pipe\", primitive 0): ",
+        &["if u jumps from 1 to 0 there, --unwrap"],
+    );
+    run.says("out.glb: ", &[", 2 triangles across more than half of the texture; "]);
+    let run = folder.run(&["tangents", "pipe.glb", "-o", "out.glb", "--unwrap"]).ends(0);
+    run.says("out.glb: ", &[", 2 triangles unwrapped; "]);
+    assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
+}
+
+#[test]
+fn unwrapping_what_spans_the_texture_rightly_is_blamed_on_unwrap() {
+    let folder = Folder::new();
+    let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let texcoords = vec![[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
+    let square = Mesh::new(positions, texcoords, vec![[0, 1, 2], [0, 2, 3]]).unwrap();
+    let square = square.with_normals(vec![[0.0, 0.0, 1.0]; 4]).unwrap();
+    folder.file("square.glb", Model::new().with("square", &square, 0).glb());
+    let run = folder.run(&["tangents", "square.glb", "-o", "out.glb", "--unwrap"]).ends(0);
+    run.says(
+        "warning: undirected vertices: 4 (mesh 0 \"square\", primitive 0): --unwrap took ",
+        &["leave --unwrap out"],
+    );
+    // Without it nothing is wrong, and nothing is said.
+    let run = folder.run(&["tangents", "square.glb", "-o", "out.glb"]).ends(0);
+    assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
+}
+
+#[test]
+fn other_commands_send_models_here() {
+    let folder = Folder::new();
+    folder.file("model.glb", Model::new().with("sheet", &sheet(2, 2), 0).glb());
+    folder.file("scan.obj", "v 0 0 0\n");
+    for arguments in [
+        ["normal", "model.glb", "-o", "n.png"].as_slice(),
+        &["normal", "scan.obj", "-o", "n.png"],
+        &["check", "model.glb"],
+        &["diff", "model.glb", "model.glb"],
+    ] {
+        folder.run(arguments).ends(1).says("no format that texbake knows", &["models are for texbake tangents"]);
+    }
 }
 
 #[test]
@@ -358,7 +427,7 @@ fn the_report_holds_every_count() {
     assert_eq!(take("total"), counts);
     let mut primitive = counts;
     primitive["name"] = "mesh 0 \"sheet\", primitive 0".into();
-    (primitive["shared_by"], primitive["has_normals"]) = (1.into(), true.into());
+    (primitive["shared_by"], primitive["had_tangents"], primitive["has_normals"]) = (1.into(), 0.into(), true.into());
     assert_eq!(primitives, json!([primitive]));
     let warnings = take("warnings");
     assert_eq!(warnings.as_array().unwrap().len(), 1, "{warnings}");
@@ -373,6 +442,8 @@ fn the_report_holds_every_count() {
             },
             "error": null, "backend": "cpu", "adapter": "reference, 1 thread", "reason": "asked for",
             "fallback": null, "bytes_in": bytes("model.glb"), "bytes_out": bytes("out.glb"),
+            "files_read": [{ "path": "model.glb", "bytes": bytes("model.glb") }],
+            "files_written": [{ "path": "out.glb", "bytes": bytes("out.glb") }],
         })
     );
 }
@@ -398,16 +469,24 @@ fn refusals_name_the_file_and_the_way_out() {
     draco.json["meshes"][0]["primitives"][0]["extensions"] =
         json!({ "KHR_draco_mesh_compression": { "bufferView": 0, "attributes": {} } });
     folder.file("draco.glb", draco.glb());
+    let away = json!({ "asset": { "version": "2.0" }, "buffers": [{ "uri": "away.bin", "byteLength": 4 }] });
+    folder.file("away.gltf", away.to_string());
     let before = folder.files(".");
 
-    let cases: [(&[&str], &[&str]); 9] = [
+    let cases: [(&[&str], &[&str]); 12] = [
         (&["missing.glb", "-o", "o.glb"], &["missing.glb: ", "check how its path is written"]),
         (&["text.glb", "-o", "o.glb"], &["text.glb: ", ".glb, .gltf and .obj"]),
         (&["model.glb", "-o", "model.glb"], &["model.glb", "would overwrite this input", "another output"]),
         (&["model.glb", "-o", "./folder/../model.glb"], &["would overwrite this input", "another output"]),
+        (&["folder", "-o", "o.glb"], &["folder: it is a folder; name a model file", "for model in folder/*.glb"]),
+        (&["-o", "out/", "folder/"], &["folder/: it is a folder; name a model file"]),
+        (&["away.gltf", "-o", "o.glb"], &["away.gltf: it refers to \"away.bin\", which cannot be read"]),
         (&["model.glb", "-o", "o.obj"], &["o.obj: ", ".glb or .gltf", "folder in /"]),
         (&["nan.glb", "-o", "o.glb"], &["nan.glb: mesh 0 \"sheet\", primitive 0: the position of vertex 0 is [NaN"]),
-        (&["index.glb", "-o", "o.glb"], &["index.glb: mesh 0 \"sheet\", primitive 0: ", "9", "below 9"]),
+        (
+            &["index.glb", "-o", "o.glb"],
+            &["index.glb: mesh 0 \"sheet\", primitive 0: its index is 9 (triangle 7: [", "below 9"],
+        ),
         (&["draco.glb", "-o", "o.glb"], &["draco.glb: ", "KHR_draco_mesh_compression", "without compression"]),
         (&["model.glb", "-o", "o.glb", "--max-bytes", "100"], &["model.glb: ", "100", "--max-bytes"]),
     ];
@@ -424,12 +503,13 @@ fn refusals_name_the_file_and_the_way_out() {
 #[test]
 fn wrong_arguments_end_with_2() {
     let folder = Folder::new();
-    let cases: [(&[&str], &[&str]); 8] = [
+    let cases: [(&[&str], &[&str]); 9] = [
         (&["m.glb"], &["--output <FILE>"]),
         (&["-o", "o.glb"], &["<MODEL>"]),
         (&["m.glb", "-o", "o.glb", "--method", "mikk"], &["'mikk' for '--method", "mikktspace, lengyel, hegde"]),
         (&["m.glb", "-o", "o.glb", "--normals", "none"], &["'none' for '--normals", "flat, smooth"]),
         (&["m.glb", "-o", "o.glb", "--weld-seams", "91"], &["'91' for '--weld-seams", "degrees from 0 to 90"]),
+        (&["m.glb", "-o", "o.glb", "--weld-seams", "-1"], &["'-1' for '--weld-seams", "degrees from 0 to 90"]),
         (&["m.glb", "-o", "o.glb", "--weld-seams", "NaN"], &["'NaN' for '--weld-seams", "degrees from 0 to 90"]),
         (&["m.glb", "-o", "o.glb", "--convention", "up"], &["'up' for '--convention", "gl, dx"]),
         (&["m.glb", "-o", "o.glb", "--backend", "cpu", "--adapter", "x"], &["--adapter is x", "--backend gpu"]),

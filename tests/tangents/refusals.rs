@@ -14,15 +14,15 @@ fn message(result: Result<Mesh, Error>) -> String {
 #[test]
 fn indices_out_of_range_are_named() {
     for (triangles, text) in [
-        (vec![[0, 1, 2], [2, 3, 1]], "index is [2, 3, 1] in triangle 1: it must be below 3, the number of vertices"),
+        (vec![[0, 1, 2], [2, 3, 1]], "index is 3 (triangle 1: [2, 3, 1]): it must be below 3, the number of vertices"),
         (
             vec![[0, 1, u32::MAX]],
-            "index is [0, 1, 4294967295] in triangle 0: it must be below 3, the number of vertices",
+            "index is 4294967295 (triangle 0: [0, 1, 4294967295]): it must be below 3, the number of vertices",
         ),
     ] {
         assert_eq!(message(Mesh::new(POSITIONS.into(), TEXCOORDS.into(), triangles)), text);
     }
-    let text = "index is [0, 0, 0] in triangle 0: it must be below 0, the number of vertices";
+    let text = "index is 0 (triangle 0: [0, 0, 0]): it must be below 0, the number of vertices";
     assert_eq!(message(Mesh::new(vec![], vec![], vec![[0; 3]])), text);
 }
 
@@ -54,10 +54,10 @@ fn numbers_that_are_not_finite_are_named_with_their_vertex() {
 
 #[test]
 fn attributes_are_as_many_as_positions() {
-    let text = "texture coordinates is 2: it must be 3, one for each position";
+    let text = "number of texture coordinates is 2: it must be 3, one for each position";
     assert_eq!(message(Mesh::new(POSITIONS.into(), TEXCOORDS[..2].into(), vec![])), text);
     let mesh = Mesh::new(POSITIONS.into(), TEXCOORDS.into(), vec![]).expect("a mesh");
-    let text = "normals is 4: it must be 3, one for each position";
+    let text = "number of normals is 4: it must be 3, one for each position";
     assert_eq!(message(mesh.with_normals(vec![[0.0, 0.0, 1.0]; 4])), text);
 }
 

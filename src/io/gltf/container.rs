@@ -1,6 +1,6 @@
 //! .glb and .gltf files as documents.
 
-use super::document::{Buffer, Document, Origin, index};
+use super::document::{Buffer, Document, ModelFile, Origin, index};
 use super::uri::{Uri, file_of};
 use crate::error::{Error, Result};
 use crate::io::limits;
@@ -14,12 +14,20 @@ pub(super) const BIN: &[u8; 4] = b"BIN\0";
 /// The file and its buffers, which together take `max_bytes` at most.
 pub(super) fn read(path: &Path, max_bytes: u64) -> Result<Document> {
     let file = read_file(path, max_bytes)?;
-    let chunks = if file.starts_with(MAGIC) { Chunks::of(path, &file)? } else { Chunks::bare(&file) };
+    let is_glb = file.starts_with(MAGIC);
+    let chunks = if is_glb { Chunks::of(path, &file)? } else { Chunks::bare(path, &file)? };
     let json: Value = serde_json::from_slice(chunks.json).map_err(|error| {
         Error::file(path, format!("it is not glTF: {error}"), "texbake reads .glb, .gltf and .obj; export it again")
     })?;
-    let mut document =
-        Document { path: path.into(), json, buffers: Vec::new(), more_chunks: chunks.more.to_vec(), max_bytes };
+    let mut document = Document {
+        path: path.into(),
+        json,
+        buffers: Vec::new(),
+        is_glb,
+        files: vec![ModelFile::new(path, &file)],
+        more_chunks: chunks.more.to_vec(),
+        max_bytes,
+    };
     let version = document.json["asset"]["version"].as_str().unwrap_or("none");
     if !version.starts_with("2.") {
         let reason = format!("its asset.version is {version}: texbake reads glTF 2.0");
@@ -30,6 +38,12 @@ pub(super) fn read(path: &Path, max_bytes: u64) -> Result<Document> {
     for number in 0..document.list("buffers").len() {
         let buffer = read_buffer(&document, number, chunks.bin, rest)?;
         rest -= buffer.bytes.len() as u64;
+        if let Origin::File = buffer.origin
+            && let Uri::Relative(relative) =
+                Uri::of(document.list("buffers")[number]["uri"].as_str().unwrap_or_default())
+        {
+            document.files.push(ModelFile::new(&file_of(path, &relative), &buffer.bytes));
+        }
         document.buffers.push(buffer);
     }
     Ok(document)
@@ -53,8 +67,13 @@ struct Chunks<'a> {
 }
 
 impl<'a> Chunks<'a> {
-    fn bare(json: &'a [u8]) -> Self {
-        Self { json, bin: None, more: &[] }
+    /// JSON, after the byte order mark that some editors put before it.
+    fn bare(path: &Path, file: &'a [u8]) -> Result<Self> {
+        let json = file.strip_prefix(b"\xef\xbb\xbf").unwrap_or(file);
+        match json.trim_ascii_start().first() {
+            Some(b'{') => Ok(Self { json, bin: None, more: &[] }),
+            _ => Err(Error::file(path, "it is no model", "texbake reads .glb, .gltf and .obj")),
+        }
     }
 
     fn of(path: &Path, file: &'a [u8]) -> Result<Self> {
@@ -99,7 +118,16 @@ fn read_buffer(document: &Document, number: usize, bin: Option<&[u8]>, limit: u6
                 check(bytes.len())?;
                 (bytes, Origin::DataUri)
             }
-            Uri::Relative(path) => (read_file(&file_of(&document.path, &path), limit)?, Origin::File),
+            Uri::Relative(path) => {
+                let missing = |error| match error {
+                    Error::Io { source, .. } => document.error(
+                        format!("it refers to {uri}, which cannot be read: {source}"),
+                        "put the file where the model looks for it",
+                    ),
+                    other => other,
+                };
+                (read_file(&file_of(&document.path, &path), limit).map_err(missing)?, Origin::File)
+            }
             Uri::Other => return Err(outside(document, uri)),
         },
     };
@@ -109,8 +137,8 @@ fn read_buffer(document: &Document, number: usize, bin: Option<&[u8]>, limit: u6
     Ok(Buffer { bytes, origin })
 }
 
-/// A file that does not lie in the model's folder.
-pub(super) fn outside(document: &Document, uri: &Value) -> Error {
+/// A buffer that does not lie in the model's folder.
+fn outside(document: &Document, uri: &Value) -> Error {
     let reason = format!("it refers to {uri}, which is not a file in its folder");
     document.error(reason, "put the file there and give its relative path, or pack the model into one .glb")
 }

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use gltf_json::buffer::View;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What an exporter is to do about a file that contradicts itself.
 const EXPORT_AGAIN: &str = "the file is damaged; export the model again";
@@ -15,10 +15,29 @@ pub(in crate::io) struct Document {
     pub path: PathBuf,
     pub json: Value,
     pub buffers: Vec<Buffer>,
+    /// Whether it was a .glb: what lies beside one stays there.
+    pub is_glb: bool,
+    /// The files that were read, the model first.
+    pub files: Vec<ModelFile>,
     /// What follows the chunks of a .glb that glTF 2.0 knows.
     pub more_chunks: Vec<u8>,
     /// The most bytes that the file and an attribute of it may take.
     pub max_bytes: u64,
+}
+
+/// A file of a model, with its size.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ModelFile {
+    /// Where it is.
+    pub path: PathBuf,
+    /// Its size in bytes.
+    pub bytes: u64,
+}
+
+impl ModelFile {
+    pub(in crate::io) fn new(path: &Path, bytes: &[u8]) -> Self {
+        Self { path: path.into(), bytes: bytes.len() as u64 }
+    }
 }
 
 /// The bytes of one of the document's buffers.

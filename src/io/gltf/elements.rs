@@ -34,9 +34,13 @@ impl Elements {
         };
         let component = component.0;
         let size = element_size(type_, component);
-        // Sparse accessors may claim elements that no byte stands for.
-        let bytes = read.count.0.checked_mul(size as u64).filter(|&bytes| bytes <= document.max_bytes);
+        // Without a view no byte stands for what is claimed.
+        let limit = if read.buffer_view.is_none() { document.max_bytes } else { u64::MAX };
+        let bytes = read.count.0.checked_mul(size as u64).filter(|&bytes| bytes <= limit);
         let (Some(bytes), Ok(count)) = (bytes, usize::try_from(read.count.0)) else {
+            if let Some(view) = &read.buffer_view {
+                return Err(damaged(&format!("reaches beyond bufferViews[{}]", view.value())));
+            }
             let reason = format!("accessors[{accessor}] claims {} elements of {size} bytes", read.count.0);
             let limit = format!("the limit is {} bytes: raise it with --max-bytes", document.max_bytes);
             return Err(document.error(reason, limit));

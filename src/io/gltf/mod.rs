@@ -21,6 +21,7 @@ mod uri;
 mod write;
 
 pub(super) use container::read_file;
+pub use document::ModelFile;
 pub(super) use document::{Buffer, Document, Origin};
-pub use model::{LeftOut, Model, ModelReadOptions, ModelReport, Primitive};
+pub use model::{LeftOut, Model, ModelFiles, ModelReadOptions, ModelReport, Primitive};
 pub(super) use uri::{Uri, of_path as uri_of_path};

@@ -1,16 +1,16 @@
 //! Models: what users read, give tangents and write.
 
-use super::document::{Document, index};
+use super::document::{Document, ModelFile};
 use super::edit::{Edited, Made};
 use super::elements::Elements;
-use super::select::{Geometry, Place, Selection, name, named};
+use super::select::{Geometry, Place, Selection, doubts, has_tangents, name, named, primitive_doubts};
 use super::write::ModelFormat;
 use super::{container, write};
 use crate::error::{Error, Result};
 use crate::io::{MAX_BYTES, obj};
 use crate::mesh::Mesh;
 use crate::ops::tangents::Tangents;
-use serde_json::Value;
+use crate::stream::Monitor;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -33,7 +33,8 @@ impl Default for ModelReadOptions {
 /// A .glb, .gltf or .obj file whose meshes get tangents.
 ///
 /// Everything else in it stays as it was, extensions and extras that texbake does not know included. Bytes of buffers
-/// keep their place; accessors that something else uses are not changed.
+/// keep their place, those of replaced tangents included, in a .glb and in a `name.bin`; accessors that something else
+/// uses are not changed.
 ///
 /// ```no_run
 /// use texbake::{Baker, TangentOptions, io::Model};
@@ -64,6 +65,17 @@ pub struct Primitive {
     /// How many primitives of the file have these vertices, texture coordinates and triangles, and share the result.
     /// Nodes that share a mesh count once.
     pub shared_by: usize,
+    /// How many of them have tangents already, which new ones replace.
+    pub had_tangents: usize,
+}
+
+/// The files that a model was made of, and those it became.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ModelFiles {
+    /// The model, its buffers, and the images that were copied or embedded.
+    pub read: Vec<ModelFile>,
+    /// Those of the new model: the files beside it first, the model last.
+    pub written: Vec<ModelFile>,
 }
 
 /// A primitive that gets no tangents.
@@ -115,19 +127,19 @@ impl Model {
         let Selection { geometries, left_out } = Selection::of(&document, options.all || is_obj)?;
         let primitives = geometries
             .iter()
-            .map(|(_, places)| Primitive { name: name(&document, places[0]), shared_by: places.len() })
+            .map(|(_, places)| Primitive {
+                name: name(&document, places[0]),
+                shared_by: places.len(),
+                had_tangents: places.iter().filter(|place| has_tangents(&document, **place)).count(),
+            })
             .collect();
         let left_out =
             left_out.into_iter().map(|(place, reason)| LeftOut { name: name(&document, place), reason }).collect();
-        let warnings = geometries
+        let of_primitives = geometries
             .iter()
-            .flat_map(|(_, places)| places)
-            .filter(|place| has_morph_tangents(&document, **place))
-            .map(|&place| {
-                let name = name(&document, place);
-                format!("{name}: the tangents of its morph targets are dropped, for they were made for other tangents")
-            })
-            .collect();
+            .flat_map(|(geometry, places)| places.iter().map(move |place| (geometry, *place)))
+            .flat_map(|(geometry, place)| primitive_doubts(&document, geometry, place));
+        let warnings = doubts(&document).into_iter().chain(of_primitives).collect();
         Ok(Self { document, geometries, primitives, left_out, warnings, made: BTreeMap::new() })
     }
 
@@ -210,33 +222,35 @@ impl Model {
     ///
     /// A .gltf made of a .glb or an OBJ has its buffer beside it (`name.bin`); one made of a .gltf has the new data in
     /// `name_tangents.bin` beside it, or in a data URI if all its buffers are. In another folder than the one it was
-    /// read from, the files that the model refers to are copied beside it. Each file appears when it is complete, the
-    /// model last.
+    /// read from, the files that the model refers to are copied beside it; a .glb made of a .gltf or an OBJ holds its
+    /// images. Missing folders are made. Each file appears when it is complete, the model last.
+    ///
+    /// A file beside the model is replaced only if it holds a buffer of the model that was read, or of the one that
+    /// is replaced.
     ///
     /// # Errors
-    /// [`Error::File`] if the extension is another, a file that the model refers to is not below its folder, or an
-    /// attribute of a split vertex cannot be copied; [`Error::Io`].
-    pub fn write(&self, path: impl AsRef<Path>) -> Result<()> {
-        let path = path.as_ref();
+    /// [`Error::File`] if the extension is another, a file beside the model exists with other content, a file that the
+    /// model refers to cannot be read or would lie above the new one's folder, or an attribute of a split vertex
+    /// cannot be copied: nothing is written then; [`Error::Io`].
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<ModelFiles> {
+        self.write_unless_cancelled(path.as_ref(), &Monitor::default())
+    }
+
+    /// The same; no file appears if it is cancelled before all are complete.
+    pub(crate) fn write_unless_cancelled(&self, path: &Path, monitor: &Monitor) -> Result<ModelFiles> {
         ModelFormat::of(path)?;
         let mut edited = Edited::new(&self.document);
         for (&primitive, made) in &self.made {
             let (geometry, places) = &self.geometries[primitive];
             edited.apply(geometry, places, made).map_err(|error| named(&self.document, places[0], error))?;
         }
-        write::write(&self.document, edited, path)
+        write::write(&self.document, edited, path, monitor)
     }
 
     fn geometry(&self, primitive: usize) -> Result<&(Geometry, Vec<Place>)> {
         let missing = || Error::parameter("primitive", primitive, format!("below {}", self.geometries.len()));
         self.geometries.get(primitive).ok_or_else(missing)
     }
-}
-
-fn has_morph_tangents(document: &Document, (mesh, number): Place) -> bool {
-    let primitive = &document.list("meshes")[mesh]["primitives"][number];
-    let targets = primitive["targets"].as_array().map_or(&[][..], Vec::as_slice);
-    targets.iter().any(|target: &Value| index(target, "TANGENT").is_some())
 }
 
 /// Fails if tangents are not of a mesh with so many vertices.

@@ -107,14 +107,59 @@ pub(super) fn named(document: &Document, place: Place, error: crate::Error) -> c
     }
 }
 
+/// Extensions that change nothing of a vertex, or that texbake takes into account.
+const KNOWN: [&str; 10] = [
+    "KHR_materials_",
+    "KHR_texture_",
+    "EXT_texture_",
+    "MSFT_texture_",
+    "KHR_lights_",
+    "KHR_mesh_quantization",
+    "EXT_mesh_gpu_instancing",
+    "KHR_draco_mesh_compression",
+    "EXT_meshopt_compression",
+    "KHR_meshopt_compression",
+];
+
+/// What the user should know about a document that can be read nevertheless.
+pub(super) fn doubts(document: &Document) -> Vec<String> {
+    let is_unknown = |name: &&str| !KNOWN.iter().any(|known| name.starts_with(known)) && !HARMLESS.contains(name);
+    let unknown: Vec<&str> = document.required_extensions().filter(is_unknown).collect();
+    let unknown = (!unknown.is_empty()).then(|| {
+        let names = unknown.join(", ");
+        format!("it requires what texbake does not know, and leaves as it is: {names}")
+    });
+    unknown.into_iter().collect()
+}
+
+/// What the user should know about a primitive that gets tangents.
+pub(super) fn primitive_doubts(document: &Document, geometry: &Geometry, place: Place) -> Vec<String> {
+    let name = name(document, place);
+    let primitive = &document.list("meshes")[place.0]["primitives"][place.1];
+    let targets = primitive["targets"].as_array().map_or(&[][..], Vec::as_slice);
+    let morphs = targets.iter().any(|target| index(target, "TANGENT").is_some());
+    let morphs = morphs.then(|| {
+        format!("{name}: the tangents of its morph targets are dropped, for they were made for other tangents")
+    });
+    let count = Elements::count(document, geometry.indices.unwrap_or(geometry.position)).unwrap_or_default();
+    let rest = (geometry.mode == Mode::Triangles && !count.is_multiple_of(3))
+        .then(|| format!("{name}: its {count} corners are no whole triangles; the last {} are not used", count % 3));
+    morphs.into_iter().chain(rest).collect()
+}
+
+/// Whether a primitive has tangents of its own.
+pub(super) fn has_tangents(document: &Document, (mesh, number): Place) -> bool {
+    index(&document.list("meshes")[mesh]["primitives"][number]["attributes"], "TANGENT").is_some()
+}
+
 /// What a primitive's tangents depend on, or why it gets none.
 fn geometry(document: &Document, primitive: &Value, all: bool) -> Result<Result<Geometry, String>> {
     let mode = match primitive.get("mode").map_or(Some(4), Value::as_u64) {
         Some(4) => Mode::Triangles,
         Some(5) => Mode::Strip,
         Some(6) => Mode::Fan,
-        Some(0) => return Ok(Err("it is made of points".into())),
-        Some(1..=3) => return Ok(Err("it is made of lines".into())),
+        Some(0) => return Ok(Err("it is made of points, which have no tangents".into())),
+        Some(1..=3) => return Ok(Err("it is made of lines, which have no tangents".into())),
         _ => return Err(document.damaged("its mode is none of glTF's")),
     };
     let Some(texture) = normal_texture(document, primitive)?.or(all.then_some(&Value::Null)) else {

@@ -40,6 +40,13 @@ pub(super) fn has_scheme(uri: &str) -> bool {
     uri.split_once(':').is_some_and(|(scheme, _)| !scheme.contains('/'))
 }
 
+/// A relative path that may leave the model's folder upwards.
+pub(super) fn upward(uri: &str) -> Option<PathBuf> {
+    let path = PathBuf::from(percent_decoded(uri).filter(|_| !uri.is_empty() && !has_scheme(uri))?);
+    let is_relative = path.components().all(|part| !matches!(part, Component::RootDir | Component::Prefix(_)));
+    (is_relative && !path.to_string_lossy().contains(['\\', '\0', ':'])).then_some(path)
+}
+
 /// The file in the folder of `model`.
 pub(super) fn file_of(model: &Path, relative: &Path) -> PathBuf {
     model.with_file_name(relative)

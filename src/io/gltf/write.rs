@@ -1,17 +1,19 @@
 //! Documents as files: .glb, or .gltf with its buffers and images beside it.
 
-use super::container::{BIN, JSON, MAGIC, outside};
-use super::document::{Document, Origin, index};
+use super::container::{BIN, JSON, MAGIC, read_file};
+use super::document::{Document, ModelFile, Origin, index};
 use super::edit::{Edited, put};
+use super::model::ModelFiles;
 use super::uri::{self, Uri, file_of};
 use crate::error::{Error, Result};
 use crate::io::replace::Replacement;
+use crate::stream::Monitor;
 use serde_json::{Value, json};
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashSet};
 use std::ffi::OsStr;
 use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// Where the parts of a merged buffer begin: as much as any extension asks for.
 const PART_ALIGNMENT: usize = 8;
@@ -49,12 +51,13 @@ impl ModelFormat {
 
 /// Writes a model and, unless it stays in its folder, the files it refers to; the model itself comes last, so that
 /// it never refers to what is not yet there.
-pub(super) fn write(document: &Document, mut edited: Edited<'_>, path: &Path) -> Result<()> {
+pub(super) fn write(document: &Document, mut edited: Edited<'_>, path: &Path, monitor: &Monitor) -> Result<ModelFiles> {
+    let mut read = document.files.clone();
     let mut files = Vec::new();
     let added = std::mem::take(&mut edited.added);
     let model = match ModelFormat::of(path)? {
         ModelFormat::Glb => {
-            let bin = join_buffers(document, &mut edited, added);
+            let bin = join_buffers(document, &mut edited, added, &mut read)?;
             glb(document, path, &edited.json, bin)?
         }
         ModelFormat::Gltf => {
@@ -63,14 +66,63 @@ pub(super) fn write(document: &Document, mut edited: Edited<'_>, path: &Path) ->
         }
     };
     if !is_same_folder(&document.path, path) {
-        copied_files(document, &edited.json, path, &mut files)?;
+        copied_files(document, &edited.json, path, &mut files, &mut read)?;
     }
+    let buffers = [own_buffers(&document.path, &document.json), buffers_of_old_model(path)].concat();
+    files.iter().try_for_each(|file| file.check_place(&buffers))?;
     files.push(NewFile { path: path.into(), parts: model });
+    let written = files.iter().map(NewFile::as_file).collect();
+    monitor.check()?;
+    for file in &files {
+        let folder = file.path.parent().unwrap_or("".as_ref());
+        std::fs::create_dir_all(folder).map_err(Error::io(folder))?;
+    }
     let ready = files.into_iter().map(NewFile::write).collect::<Result<Vec<_>>>()?;
-    ready.into_iter().try_for_each(Replacement::commit)
+    monitor.check()?;
+    ready.into_iter().try_for_each(Replacement::commit)?;
+    Ok(ModelFiles { read, written })
+}
+
+/// The files of a model's buffers that exist.
+fn own_buffers(model: &Path, json: &Value) -> Vec<PathBuf> {
+    let uris = json["buffers"].as_array().into_iter().flatten().filter_map(|buffer| buffer["uri"].as_str());
+    let files = uris.filter(|uri| !uri::is_data(uri)).filter_map(|uri| match Uri::of(uri) {
+        Uri::Relative(relative) => std::fs::canonicalize(file_of(model, &relative)).ok(),
+        _ => None,
+    });
+    files.collect()
+}
+
+/// Those of the model that is to be replaced: without it nobody needs them.
+fn buffers_of_old_model(path: &Path) -> Vec<PathBuf> {
+    if ModelFormat::of(path).is_ok_and(|format| format == ModelFormat::Glb) {
+        return Vec::new();
+    }
+    let old = std::fs::read(path).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    old.map_or_else(Vec::new, |json| own_buffers(path, &json))
 }
 
 impl NewFile<'_> {
+    fn as_file(&self) -> ModelFile {
+        ModelFile { path: self.path.clone(), bytes: self.parts.iter().map(|part| part.len() as u64).sum() }
+    }
+
+    /// Fails if the file, which the user did not name, would replace another one than these.
+    fn check_place(&self, replaceable: &[PathBuf]) -> Result<()> {
+        let Ok(place) = std::fs::canonicalize(&self.path) else { return Ok(()) };
+        if replaceable.contains(&place) || self.is_content_of(&place) {
+            return Ok(());
+        }
+        let reason = "it belongs to the new model, and exists already with other content";
+        Err(Error::file(&self.path, reason, "move or remove it, or write the model as .glb or into another folder"))
+    }
+
+    fn is_content_of(&self, path: &Path) -> bool {
+        let length = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file).map(|file| file.len());
+        length == Some(self.as_file().bytes)
+            && std::fs::read(path).is_ok_and(|bytes| bytes.iter().eq(self.parts.iter().flat_map(|part| part.iter())))
+    }
+
     fn write(self) -> Result<Replacement> {
         let replacement = Replacement::create(&self.path)?;
         let mut output = BufWriter::new(replacement.output()?);
@@ -83,7 +135,15 @@ impl NewFile<'_> {
 }
 
 /// Makes all buffers one, with what was added at its end. Those that extensions fill follow it.
-fn join_buffers<'a>(document: &'a Document, edited: &mut Edited<'_>, added: Vec<u8>) -> Parts<'a> {
+///
+/// Images of what was no .glb go into it too, so that a .glb stands alone.
+fn join_buffers<'a>(
+    document: &'a Document,
+    edited: &mut Edited<'_>,
+    added: Vec<u8>,
+    read: &mut Vec<ModelFile>,
+) -> Result<Parts<'a>> {
+    let images = if document.is_glb { Vec::new() } else { images_of(document, read)? };
     let mut parts = Parts::new();
     let mut end = 0;
     let mut append = |bytes: Cow<'a, [u8]>, alignment: usize| {
@@ -113,24 +173,27 @@ fn join_buffers<'a>(document: &'a Document, edited: &mut Edited<'_>, added: Vec<
     }
     if !is_binary {
         move_views(&mut edited.json, &places);
-        take_images(&mut edited.json, |bytes| append(bytes.into(), 4));
+    }
+    for (image, type_, bytes) in images {
+        let view = json!({ "buffer": 0, "byteLength": bytes.len(), "byteOffset": append(bytes.into(), 4) });
+        embed(&mut edited.json, image, type_, view);
     }
     if !added.is_empty() {
         let begin = append(added.into(), 4);
         place_added(edited, 0, begin);
     }
     if end > 0 || buffers.len() > 1 {
-        if !(is_binary && edited.added_views.is_empty()) {
+        if !(document.is_glb && is_binary && edited.added_views.is_empty()) {
             buffers[0]["byteLength"] = end.into();
         }
         edited.json["buffers"] = buffers.into();
     }
-    parts
+    Ok(parts)
 }
 
 /// Gives buffer views the buffers and the offsets that theirs moved to.
 fn move_views(json: &mut Value, places: &[(usize, usize)]) {
-    for view in json["bufferViews"].as_array_mut().into_iter().flatten() {
+    for view in json.get_mut("bufferViews").and_then(Value::as_array_mut).into_iter().flatten() {
         move_view(view, places);
         // Compressed data has a place of its own.
         for name in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
@@ -151,23 +214,64 @@ fn move_view(view: &mut Value, places: &[(usize, usize)]) {
     }
 }
 
-/// Puts the images in data URIs into the chunk, where a .glb has them; `append` says where they begin.
-fn take_images(json: &mut Value, mut append: impl FnMut(Vec<u8>) -> usize) {
-    let mut images = json.get_mut("images").map(Value::take).unwrap_or_default();
-    for image in images.as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
-        let Some(uri) = image.get("uri").and_then(Value::as_str) else { continue };
-        let Uri::Data(Some(bytes)) = Uri::of(uri) else { continue };
-        let type_ = uri["data:".len()..].split(';').next().unwrap_or_default().to_owned();
-        let view = json!({ "buffer": 0, "byteLength": bytes.len(), "byteOffset": append(bytes) });
-        let at = json["bufferViews"].as_array().map_or(0, Vec::len);
-        put(json, "bufferViews", at, view);
-        image.shift_remove("uri");
-        image.insert("bufferView".into(), at.into());
-        image.entry("mimeType").or_insert(type_.into());
+/// An image's number, type and bytes.
+type Image = (usize, String, Vec<u8>);
+
+/// The images in data URIs and in files; addresses stay what they are.
+fn images_of(document: &Document, read: &mut Vec<ModelFile>) -> Result<Vec<Image>> {
+    let mut images = Vec::new();
+    for (number, image) in document.list("images").iter().enumerate() {
+        let Some(uri) = image["uri"].as_str().filter(|uri| !is_url(uri)) else { continue };
+        if let Uri::Data(data) = Uri::of(uri) {
+            let type_ = uri["data:".len()..].split(';').next().unwrap_or_default().to_owned();
+            images.extend(data.map(|bytes| (number, type_, bytes)));
+            continue;
+        }
+        let path = file_of(&document.path, &uri::upward(uri).ok_or_else(|| not_beside(document, uri))?);
+        let bytes = read_file(&path, document.max_bytes).map_err(|error| {
+            let reason = format!("its image {uri} cannot be read: {error}");
+            document.error(reason, "put the file there, or write .gltf into the folder it came from")
+        })?;
+        // What is no image stays where it is; above the folder that may be anything.
+        let Some(type_) = image_type(&bytes, image["mimeType"].as_str(), &path) else { continue };
+        read.push(ModelFile::new(&path, &bytes));
+        images.push((number, type_, bytes));
     }
-    if !images.is_null() {
-        json["images"] = images;
-    }
+    Ok(images)
+}
+
+/// By its first bytes; in the model's folder, else as it is called.
+fn image_type(bytes: &[u8], claimed: Option<&str>, path: &Path) -> Option<String> {
+    let known: [(&[u8], &str); 5] = [
+        (b"\x89PNG", "image/png"),
+        (b"\xff\xd8\xff", "image/jpeg"),
+        (b"\xabKTX 20\xbb", "image/ktx2"),
+        (b"DDS ", "image/vnd-ms.dds"),
+        (b"RIFF", "image/webp"),
+    ];
+    let type_ = known.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, type_)| *type_);
+    let is_below = !path.components().any(|part| part == Component::ParentDir);
+    type_.or(claimed.filter(|_| is_below)).map(str::to_owned)
+}
+
+/// Makes an image one of a buffer view.
+fn embed(json: &mut Value, image: usize, type_: String, view: Value) {
+    let at = json["bufferViews"].as_array().map_or(0, Vec::len);
+    put(json, "bufferViews", at, view);
+    let Some(image) = json["images"][image].as_object_mut() else { return };
+    image.shift_remove("uri");
+    image.insert("bufferView".into(), at.into());
+    image.entry("mimeType").or_insert(type_.into());
+}
+
+/// A file that cannot be beside a model in another folder as it is beside the one that was read.
+fn not_beside(document: &Document, uri: &str) -> Error {
+    let reason = format!("it refers to {uri:?}, which is not a file in its folder");
+    let remedy = match document.is_glb {
+        true => "write it into the folder it came from",
+        false => "write it into the folder it came from, or as .glb, which holds its images",
+    };
+    document.error(reason, remedy)
 }
 
 /// Gives the new buffer views their buffer, in which what was added begins at `begin`.
@@ -288,22 +392,29 @@ fn is_same_folder(one: &Path, other: &Path) -> bool {
 }
 
 /// The files that a document refers to, for the same places beside the new one.
-fn copied_files(document: &Document, json: &Value, path: &Path, files: &mut Vec<NewFile<'_>>) -> Result<()> {
+fn copied_files(
+    document: &Document,
+    json: &Value,
+    path: &Path,
+    files: &mut Vec<NewFile<'_>>,
+    read: &mut Vec<ModelFile>,
+) -> Result<()> {
     let mut uris = Vec::new();
     collect_uris(json, &mut uris);
     for text in uris {
         let Some(uri) = text.as_str().filter(|uri| !uri::is_data(uri) && !is_url(uri)) else { continue };
-        let Uri::Relative(relative) = Uri::of(uri) else { return Err(outside(document, text)) };
+        let Uri::Relative(relative) = Uri::of(uri) else { return Err(not_beside(document, uri)) };
         let target = path.with_file_name(&relative);
         if files.iter().any(|file| file.path == target) {
             continue;
         }
-        let bytes = std::fs::read(file_of(&document.path, &relative)).map_err(|error| {
+        let source = file_of(&document.path, &relative);
+        let bytes = std::fs::read(&source).map_err(|error| {
             let reason = format!("it refers to {uri}, which cannot be read: {error}");
             document.error(reason, "put the file there, or write the model into the folder it came from")
         })?;
-        if let Some(folder) = target.parent() {
-            std::fs::create_dir_all(folder).map_err(Error::io(folder))?;
+        if !read.iter().any(|file| file.path == source) {
+            read.push(ModelFile::new(&source, &bytes));
         }
         files.push(NewFile { path: target, parts: vec![bytes.into()] });
     }

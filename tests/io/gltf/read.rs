@@ -209,6 +209,26 @@ fn what_stands_for_a_normal_map() {
 }
 
 #[test]
+fn doubtful_files_are_read_with_a_warning() {
+    let (mut file, position, texcoord) = Builder::square();
+    let attributes = json!({ "POSITION": position, "TEXCOORD_0": texcoord });
+    file.mesh(json!({ "attributes": attributes, "material": 0 }));
+    file.json["extensionsRequired"] = json!(["VENDOR_b", "KHR_texture_transform", "KHR_mesh_quantization"]);
+    let expected = [
+        "it requires what texbake does not know, and leaves as it is: VENDOR_b",
+        "mesh 0, primitive 0: its 4 corners are no whole triangles; the last 1 are not used",
+    ];
+    assert_eq!(file.model().warnings(), expected);
+
+    // A byte order mark before the JSON.
+    let folder = super::super::support::Folder::new();
+    let marked = [b"\xef\xbb\xbf", &file.gltf_with_data()[..]].concat();
+    assert_eq!(Model::read(folder.file("m.gltf", &marked)).unwrap().primitives().len(), 1);
+    let message = Model::read(folder.file("m.gltf", b"\x89PNG\r\n")).unwrap_err().to_string();
+    assert!(message.ends_with("m.gltf: it is no model; texbake reads .glb, .gltf and .obj"), "{message}");
+}
+
+#[test]
 fn what_gets_none_is_listed_with_the_reason() {
     let (mut file, position, texcoord) = Builder::square();
     let both = json!({ "POSITION": position, "TEXCOORD_0": texcoord });
@@ -237,14 +257,15 @@ fn what_gets_none_is_listed_with_the_reason() {
     }
     let model = file.model();
     let name = |number: u32| format!("mesh 0 \"a \\\"square\\\"\", primitive {number}");
-    let expected = [(0, 2), (10, 1)].map(|(number, shared_by)| Primitive { name: name(number), shared_by });
+    let expected =
+        [(0, 2), (10, 1)].map(|(number, shared_by)| Primitive { name: name(number), shared_by, had_tangents: 0 });
     assert_eq!(model.primitives(), expected);
     let left_out = |(number, reason): (u32, &str)| LeftOut { name: name(number), reason: reason.into() };
     let mut expected = [
-        (1, "it is made of points"),
-        (2, "it is made of lines"),
-        (3, "its material has no normal map"),
-        (4, "its material has no normal map"),
+        (1, "it is made of points, which have no tangents"),
+        (2, "it is made of lines, which have no tangents"),
+        (3, "its material has no normal map (--all takes it too)"),
+        (4, "its material has no normal map (--all takes it too)"),
         (5, "it has no TEXCOORD_2, which its normal map uses"),
         (6, "it has no TEXCOORD_0, which its normal map uses"),
         (7, "it has no POSITION"),

@@ -53,7 +53,7 @@ fn convert(from: &Path, all: bool, method: TangentMethod, to: &[&Path]) -> usize
         let mesh = model.mesh(primitive).unwrap();
         model.set_tangents(primitive, Baker::cpu().tangents(&mesh, &options).unwrap()).unwrap();
     }
-    to.iter().for_each(|path| model.write(path).unwrap());
+    to.iter().for_each(|path| drop(model.write(path).unwrap()));
     model.primitives().len()
 }
 

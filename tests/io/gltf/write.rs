@@ -42,6 +42,18 @@ fn written(file: &Builder, tangents: &[Tangents]) -> (Value, Vec<u8>) {
     (json, bin)
 }
 
+#[test]
+fn nothing_is_added_where_nothing_changes() {
+    let folder = Folder::new();
+    let json = json!({ "asset": { "version": "2.0" } });
+    let path = folder.file("m.gltf", &serde_json::to_vec(&json).unwrap());
+    for name in ["n.glb", "n.gltf"] {
+        Model::read(&path).unwrap().write(folder.path(name)).unwrap();
+    }
+    assert_same_json(&json_of(&folder.path("n.gltf")), &json);
+    assert_same_json(&split_glb(&std::fs::read(folder.path("n.glb")).unwrap()).0, &json);
+}
+
 /// Compares JSON with the order of its fields.
 fn assert_same_json(got: &Value, expected: &Value) {
     assert_eq!(serde_json::to_string_pretty(got).unwrap(), serde_json::to_string_pretty(expected).unwrap());
@@ -432,7 +444,7 @@ fn from_glb_to_gltf_and_back() {
     let folder = Folder::new();
     let (mut file, position, texcoord) = Builder::square();
     file.mesh(json!({ "attributes": { "POSITION": position, "TEXCOORD_0": texcoord }, "material": 0 }));
-    file.json["images"] = json!([{ "uri": "image.png" }]);
+    file.json["images"] = json!([{ "uri": "https://example.com/a.png" }]);
     let path = folder.file("m.glb", &file.glb());
     let out = folder.path("o p.gltf");
     convert(&path, &out);
@@ -518,6 +530,89 @@ fn files_that_a_model_refers_to_go_with_it() {
     std::fs::create_dir(folder.path("binary")).unwrap();
     convert(&path, &folder.path("binary/x.glb"));
     assert_eq!(names("binary"), ["maps", "x.glb"]);
+}
+
+/// A model in a folder of its own, with an image in another one beside that.
+fn with_image_above(folder: &Folder, name: &str) -> std::path::PathBuf {
+    let (mut file, position, texcoord) = Builder::square();
+    file.mesh(json!({ "attributes": { "POSITION": position, "TEXCOORD_0": texcoord }, "material": 0 }));
+    file.json["images"] = json!([{ "uri": "../maps/n%20m.png", "name": "bumps" }]);
+    for name in ["maps", "in"] {
+        std::fs::create_dir(folder.path(name)).unwrap();
+    }
+    folder.file("maps/n m.png", b"\x89PNG\r");
+    folder.file(name, &file.gltf_with_data())
+}
+
+#[test]
+fn a_glb_made_of_gltf_stands_alone() {
+    let folder = Folder::new();
+    let path = with_image_above(&folder, "in/m.gltf");
+    let mut model = Model::read(&path).unwrap();
+    model.set_tangents(0, unsplit(TANGENTS.to_vec())).unwrap();
+    let out = folder.path("new/folder/m.glb");
+    let files = model.write(&out).unwrap();
+    let (json, bin) = split_glb(&std::fs::read(&out).unwrap());
+    assert_eq!(json["images"], json!([{ "name": "bumps", "bufferView": 2, "mimeType": "image/png" }]));
+    let begin = json["bufferViews"][2]["byteOffset"].as_u64().unwrap() as usize;
+    assert_eq!(json["bufferViews"][2]["byteLength"], 5);
+    assert_eq!(bin[begin..begin + 5], *b"\x89PNG\r");
+    assert_tangents(&out);
+    let sizes: Vec<u64> = files.read.iter().chain(&files.written).map(|file| file.bytes).collect();
+    let length = |path: &Path| std::fs::metadata(path).unwrap().len();
+    assert_eq!(sizes, [length(&path), 5, length(&out)]);
+    assert_eq!(files.written[0].path, out);
+
+    // What is above the folder and no image is not put into a model that may be published.
+    folder.file("maps/n m.png", b"a secret");
+    let message = model.write(folder.path("none/m.glb")).unwrap_err().to_string();
+    let expected = "m.gltf: it refers to \"../maps/n%20m.png\", which is not a file in its folder; write it into the \
+                    folder it came from, or as .glb, which holds its images";
+    assert!(message.ends_with(expected), "{message}");
+    let message = model.write(folder.path("none/m.gltf")).unwrap_err().to_string();
+    assert!(message.ends_with(expected), "{message}");
+    assert_eq!(folder.names(), ["in", "maps", "new"], "nothing stays behind");
+    model.write(folder.path("in/n.gltf")).unwrap();
+}
+
+#[test]
+fn files_that_the_user_did_not_name_stay() {
+    let folder = Folder::new();
+    let (mut file, position, texcoord) = Builder::square();
+    file.mesh(json!({ "attributes": { "POSITION": position, "TEXCOORD_0": texcoord }, "material": 0 }));
+    file.json["images"] = json!([{ "uri": "n.png" }]);
+    for name in ["in", "out"] {
+        std::fs::create_dir(folder.path(name)).unwrap();
+    }
+    folder.file("in/n.png", b"an image");
+    folder.file("in/m.bin", &file.bin);
+    let mut model = Model::read(folder.file("in/m.gltf", &file.gltf("m.bin"))).unwrap();
+    model.set_tangents(0, unsplit(TANGENTS.to_vec())).unwrap();
+    for (name, path) in [("n.png", "out/t.gltf"), ("m.bin", "out/t.gltf"), ("t_tangents.bin", "out/t.gltf")] {
+        let other = folder.file(&format!("out/{name}"), b"of another model");
+        let message = model.write(folder.path(path)).unwrap_err().to_string();
+        let expected = format!(
+            "{name}: it belongs to the new model, and exists already with other content; move or remove it, or write \
+             the model as .glb or into another folder"
+        );
+        assert!(message.ends_with(&expected), "{message}");
+        assert_eq!(std::fs::read(&other).unwrap(), b"of another model");
+        assert!(!folder.path(path).exists());
+        std::fs::remove_file(other).unwrap();
+    }
+    let files = model.write(folder.path("out/t.gltf")).unwrap();
+    let names: Vec<_> = files.written.iter().map(|file| file.path.file_name().unwrap().to_owned()).collect();
+    assert_eq!(names, ["t_tangents.bin", "m.bin", "n.png", "t.gltf"]);
+
+    // The buffers of the model that is replaced go with it.
+    model.set_tangents(0, unsplit(TANGENTS.map(|[x, y, z, w]| [x, y, z, -w]).to_vec())).unwrap();
+    model.write(folder.path("out/t.gltf")).unwrap();
+    assert_eq!(std::fs::metadata(folder.path("out/t_tangents.bin")).unwrap().len(), 64);
+    // So do those of a model that gets new tangents in its place.
+    let again = folder.path("out/t.gltf");
+    assert_eq!(Model::read(&again).unwrap().primitives()[0].had_tangents, 1);
+    convert(&again, &again);
+    assert_tangents(&again);
 }
 
 #[test]
