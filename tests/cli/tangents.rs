@@ -359,6 +359,7 @@ fn the_report_holds_every_count() {
     let mut primitive = counts;
     primitive["name"] = "mesh 0 \"sheet\", primitive 0".into();
     (primitive["shared_by"], primitive["has_normals"]) = (1.into(), true.into());
+    primitive["had_tangents"] = 0.into();
     assert_eq!(primitives, json!([primitive]));
     let warnings = take("warnings");
     assert_eq!(warnings.as_array().unwrap().len(), 1, "{warnings}");
