@@ -374,6 +374,8 @@ fn the_report_holds_every_count() {
             },
             "error": null, "backend": "cpu", "adapter": "reference, 1 thread", "reason": "asked for",
             "fallback": null, "bytes_in": bytes("model.glb"), "bytes_out": bytes("out.glb"),
+            "files_read": [{ "path": "model.glb", "bytes": bytes("model.glb") }],
+            "files_written": [{ "path": "out.glb", "bytes": bytes("out.glb") }],
         })
     );
 }
