@@ -2,7 +2,7 @@
 
 use super::support::Folder;
 use serde_json::json;
-use texbake::io::{Model, ModelReport};
+use texbake::io::{Model, ModelReadOptions, ModelReport};
 use texbake::{Baker, TangentOptions};
 
 /// A square and a triangle of it with another material, as a modeller writes them.
@@ -69,9 +69,101 @@ fn what_is_no_model() {
     let folder = Folder::new();
     let message = |text: &str| Model::read(folder.file("m.obj", text.as_bytes())).unwrap_err().to_string();
     assert!(message("v 0 0 0\n").ends_with("m.obj: it has no faces; export the model as polygons"));
-    assert!(message("f 1 2 3\n").contains("m.obj: it is not OBJ: "));
+    assert!(message("f 1 2 3\n").contains("m.obj: line 1: a face refers to position 3 of 0"));
     assert!(Model::read(folder.path("none.obj")).unwrap_err().to_string().ends_with("check how its path is written"));
-    // A missing library of materials is none of the meshes' business.
+}
+
+#[test]
+fn errors_name_the_line() {
+    let folder = Folder::new();
+    for (text, reason) in [
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 4\n", "line 5: a face refers to position 4 of 3"),
+        ("v 0 0 0\nf -2 1 1\n", "line 2: a face refers to position -2, and 1 stand before it"),
+        ("v 0 0 0\nvt 0 0\nf 1/1 1/1 1/2\n", "line 3: a face refers to texture coordinate 2 of 1"),
+        ("v 0,0 0 0\n", "line 1: \"0,0\" is no number"),
+        ("v 0 0 0\nvn 1 0\n", "line 2: it has 2 of 3 numbers"),
+        ("f a b c\n", "line 1: \"a\" is no corner of a face"),
+        ("f 1/1/1/1 1 1\n", "line 1: \"1/1/1/1\" is no corner of a face"),
+        ("f 0 1 1\n", "line 1: a face refers to position 0, and 0 stand before it"),
+    ] {
+        let message = Model::read(folder.file("m.obj", text.as_bytes())).unwrap_err().to_string();
+        let expected = format!("m.obj: {reason}; it is not OBJ, or damaged; export the model again");
+        assert!(message.ends_with(&expected), "{message}");
+    }
     let path = folder.file("m.obj", SQUARE.as_bytes());
-    assert_eq!(Model::read(path).unwrap().primitives().len(), 2);
+    let options = ModelReadOptions { max_bytes: SQUARE.len() as u64 + 1, ..Default::default() };
+    let message = Model::read_with(path, &options).unwrap_err().to_string();
+    assert!(message.ends_with("of the limit are left; raise it with --max-bytes"), "{message}");
+}
+
+/// The JSON of the model when it is written as .gltf beside it.
+fn json_of(folder: &Folder, model: &Model) -> serde_json::Value {
+    model.write(folder.path("written.gltf")).unwrap();
+    serde_json::from_slice(&std::fs::read(folder.path("written.gltf")).unwrap()).unwrap()
+}
+
+#[test]
+fn materials_keep_their_maps() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("tex")).unwrap();
+    folder.file("tex/wood n.png", b"\x89PNG");
+    folder.file("tex/wood.jpg", b"\xff\xd8\xff");
+    folder.file("tex/wood.tga", b"tga");
+    folder.file(
+        "my mat.mtl",
+        b"newmtl wood\nKd 1 1 1\nKe 0 0 0\nd 0.5\nmap_Kd tex\\wood.jpg\nmap_Bump -bm 1 -clamp on tex/wood n.png\n\
+          newmtl plain\nillum 2\nmap_Kd tex/wood.tga\n",
+    );
+    let text = SQUARE.replace("m.mtl", "my mat.mtl").replace("red", "wood").replace("rough", "other");
+    let model = Model::read(folder.file("m.obj", text.as_bytes())).unwrap();
+    let [texture, dropped] = model.warnings() else { panic!("{:?}", model.warnings()) };
+    let expected = "my mat.mtl: map_Kd tex/wood.tga: the texture is dropped: it is no PNG or JPEG file that exists, at a \
+                    relative path";
+    assert!(texture.ends_with(expected), "{texture}");
+    assert!(dropped.ends_with("my mat.mtl: dropped, as texbake does not read it: Ke, d"), "{dropped}");
+    let json = json_of(&folder, &model);
+    let wood = json!({
+        "name": "wood",
+        "pbrMetallicRoughness": {
+            "metallicFactor": 0.0, "baseColorFactor": [1.0, 1.0, 1.0, 1.0], "baseColorTexture": { "index": 0 }
+        },
+        "normalTexture": { "index": 1 }
+    });
+    assert_eq!(json["materials"], json!([wood, { "name": "plain" }, { "name": "other" }]));
+    assert_eq!(json["images"], json!([{ "uri": "tex/wood.jpg" }, { "uri": "tex/wood%20n.png" }]));
+    let files = model.write(folder.path("m.glb")).unwrap();
+    assert_eq!((files.read.len(), files.written.len()), (4, 1));
+    std::fs::remove_dir_all(folder.path("tex")).unwrap();
+    assert_eq!(Model::read(folder.path("m.glb")).unwrap().warnings(), [""; 0]);
+
+    // Without the library, names are left.
+    std::fs::remove_file(folder.path("my mat.mtl")).unwrap();
+    let model = Model::read(folder.path("m.obj")).unwrap();
+    assert!(model.warnings().iter().all(|warning| warning.starts_with("its materials keep only their names: ")));
+    assert!(!model.warnings().is_empty());
+    assert_eq!(json_of(&folder, &model)["materials"], json!([{ "name": "wood" }, { "name": "other" }]));
+}
+
+#[test]
+fn texts_of_any_age() {
+    let folder = Folder::new();
+    // Latin-1, a continued line, a comment behind, groups without an object, colours, a face without coordinates.
+    let text = b"g R\xf6ck\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1 # a corner\nvt 0 0\nvt 1 0\nvt 0 1\n\
+                 f 1/1 2/2 \\\n 3/3\nf 1 2/2 3/3\nl 1 2\n";
+    let model = Model::read(folder.file("m.obj", text)).unwrap();
+    assert_eq!(model.report(), ModelReport { primitives: 1, shared: 0, left_out: 1 });
+    assert_eq!(model.primitives()[0].name, "mesh 0 \"R\u{fffd}ck\", primitive 0");
+    assert_eq!(model.mesh(0).unwrap().positions().len(), 3);
+    let json = json_of(&folder, &model);
+    let primitives = &json["meshes"][0]["primitives"];
+    assert_eq!(json["accessors"][primitives[0]["attributes"]["COLOR_0"].as_u64().unwrap() as usize]["type"], "VEC3");
+    assert_eq!(primitives[1]["attributes"].get("TEXCOORD_0"), None);
+
+    // No name is made up, and concave polygons are not covered twice.
+    let text = "v 0 0 0\nv 2 2 0\nv 0 4 0\nv 1 2 0\nvt 0 0\nf 1/1 2/1 3/1 4/1\n";
+    let model = Model::read(folder.file("n.obj", text.as_bytes())).unwrap();
+    assert_eq!(model.primitives()[0].name, "mesh 0, primitive 0");
+    let mesh = model.mesh(0).unwrap();
+    let positions = mesh.triangles().iter().map(|triangle| triangle.map(|vertex| mesh.positions()[vertex as usize][1]));
+    assert_eq!(positions.collect::<Vec<_>>(), [[2.0, 0.0, 2.0], [2.0, 4.0, 2.0]]);
 }

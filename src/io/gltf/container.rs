@@ -25,6 +25,7 @@ pub(super) fn read(path: &Path, max_bytes: u64) -> Result<Document> {
         buffers: Vec::new(),
         is_glb,
         files: vec![ModelFile::new(path, &file)],
+        warnings: Vec::new(),
         more_chunks: chunks.more.to_vec(),
         max_bytes,
     };

@@ -19,6 +19,8 @@ pub(in crate::io) struct Document {
     pub is_glb: bool,
     /// The files that were read, the model first.
     pub files: Vec<ModelFile>,
+    /// What its user should know.
+    pub warnings: Vec<String>,
     /// What follows the chunks of a .glb that glTF 2.0 knows.
     pub more_chunks: Vec<u8>,
     /// The most bytes that the file and an attribute of it may take.

@@ -24,4 +24,4 @@ pub(super) use container::read_file;
 pub use document::ModelFile;
 pub(super) use document::{Buffer, Document, Origin};
 pub use model::{LeftOut, Model, ModelFiles, ModelReadOptions, ModelReport, Primitive};
-pub(super) use uri::{Uri, of_path as uri_of_path};
+pub(super) use uri::of_path as uri_of_path;

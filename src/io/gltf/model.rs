@@ -139,7 +139,7 @@ impl Model {
             .iter()
             .flat_map(|(geometry, places)| places.iter().map(move |place| (geometry, *place)))
             .flat_map(|(geometry, place)| primitive_doubts(&document, geometry, place));
-        let warnings = doubts(&document).into_iter().chain(of_primitives).collect();
+        let warnings = document.warnings.iter().cloned().chain(doubts(&document)).chain(of_primitives).collect();
         Ok(Self { document, geometries, primitives, left_out, warnings, made: BTreeMap::new() })
     }
 

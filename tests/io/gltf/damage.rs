@@ -45,6 +45,8 @@ fn convert(path: &Path) -> Result<(), Error> {
         model.set_tangents(primitive, Baker::reference().tangents(&mesh, &TangentOptions::default())?)?;
     }
     model.write(path.with_file_name("out.glb"))?;
+    // That of another file's model.
+    let _ = std::fs::remove_file(path.with_file_name("out.bin"));
     model.write(path.with_file_name("out.gltf")).map(drop)
 }
 

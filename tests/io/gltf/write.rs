@@ -553,9 +553,9 @@ fn a_glb_made_of_gltf_stands_alone() {
     let out = folder.path("new/folder/m.glb");
     let files = model.write(&out).unwrap();
     let (json, bin) = split_glb(&std::fs::read(&out).unwrap());
-    assert_eq!(json["images"], json!([{ "name": "bumps", "bufferView": 2, "mimeType": "image/png" }]));
-    let begin = json["bufferViews"][2]["byteOffset"].as_u64().unwrap() as usize;
-    assert_eq!(json["bufferViews"][2]["byteLength"], 5);
+    assert_eq!(json["images"], json!([{ "name": "bumps", "bufferView": 3, "mimeType": "image/png" }]));
+    let begin = json["bufferViews"][3]["byteOffset"].as_u64().unwrap() as usize;
+    assert_eq!(json["bufferViews"][3]["byteLength"], 5);
     assert_eq!(bin[begin..begin + 5], *b"\x89PNG\r");
     assert_tangents(&out);
     let sizes: Vec<u64> = files.read.iter().chain(&files.written).map(|file| file.bytes).collect();
@@ -602,7 +602,7 @@ fn files_that_the_user_did_not_name_stay() {
     }
     let files = model.write(folder.path("out/t.gltf")).unwrap();
     let names: Vec<_> = files.written.iter().map(|file| file.path.file_name().unwrap().to_owned()).collect();
-    assert_eq!(names, ["t_tangents.bin", "m.bin", "n.png", "t.gltf"]);
+    assert_eq!(names, ["t_tangents.bin", "n.png", "m.bin", "t.gltf"]);
 
     // The buffers of the model that is replaced go with it.
     model.set_tangents(0, unsplit(TANGENTS.map(|[x, y, z, w]| [x, y, z, -w]).to_vec())).unwrap();
