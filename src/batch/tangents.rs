@@ -182,22 +182,10 @@ fn warnings(done: &ModelTangents, options: &TangentOptions) -> Vec<String> {
     let made = |has_normals: bool| {
         counted(&|primitive| if primitive.has_normals == has_normals { primitive.found.normals_made } else { 0 })
     };
-    // A triangle that rightly spans more than half of the texture has no area left when it is unwrapped.
-    let flattened = |primitive: &PrimitiveTangents| options.unwrap && primitive.found.jumps > 0;
-    let undirected = |by_unwrap: bool| {
-        counted(&|primitive| if flattened(primitive) == by_unwrap { primitive.found.undirected } else { 0 })
-    };
-    const MADE_UP: &str = "they got any tangent at a right angle to the normal, and a normal map does not fit there";
-    let unwrapped = undirected(true).map(|places| {
-        format!(
-            "undirected vertices: {places}: --unwrap took triangles that span more than half of the texture to have \
-             jumped from 1 to 0; if they span it rightly, leave --unwrap out; {MADE_UP}"
-        )
-    });
-    let undirected = undirected(false).map(|places| {
+    let undirected = counted(&|primitive| primitive.found.undirected).map(|places| {
         format!(
             "undirected vertices: {places}: their triangles have no area in the texture, or their tangents cancel; \
-             {MADE_UP}"
+             they got any tangent at a right angle to the normal, and a normal map does not fit there"
         )
     });
     let jumps = counted(&|primitive| match primitive.found {
@@ -205,7 +193,9 @@ fn warnings(done: &ModelTangents, options: &TangentOptions) -> Vec<String> {
         _ => 0,
     });
     let jumps = jumps.map(|places| {
-        format!("triangles that span more than half of the texture: {places}: if u jumps from 1 to 0 there, --unwrap")
+        format!(
+            "triangles whose u spans more than half of the texture: {places}: if it jumps from 1 to 0 there, --unwrap"
+        )
     });
     let remade = match options.missing_normals {
         MissingNormals::Flat => "each triangle got its own, as glTF prescribes; --normals smooth rounds the edges",
@@ -222,12 +212,7 @@ fn warnings(done: &ModelTangents, options: &TangentOptions) -> Vec<String> {
         format!("left out: {}: {reason}", listed(&names))
     });
     let nothing = done.primitives.is_empty().then(|| "no primitive got tangents".to_owned());
-    [undirected, unwrapped, jumps, missing, zero, normalised]
-        .into_iter()
-        .flatten()
-        .chain(left_out)
-        .chain(nothing)
-        .collect()
+    [undirected, jumps, missing, zero, normalised].into_iter().flatten().chain(left_out).chain(nothing).collect()
 }
 
 /// Names, of many only the first.

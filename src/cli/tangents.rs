@@ -97,9 +97,8 @@ pub struct Formula {
     #[arg(long, value_parser = choice::<Precision>(Precision::NAMES), help_heading = TANGENTS)]
     pub precision: Option<Precision>,
 
-    /// Take triangles that span more than half of the texture to have jumped from 1 to 0, as around a cylinder without
-    /// a seam. Only for meshes of which no triangle rightly spans that much of u or of v, as a plain square of two
-    /// triangles does
+    /// Take u that spans more than half of the texture in a triangle, and no more than all of it, to have jumped from 1
+    /// to 0, as around a cylinder without a seam; not for meshes of which a triangle rightly spans that much
     #[arg(long, help_heading = TANGENTS)]
     pub unwrap: bool,
 

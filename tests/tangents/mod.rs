@@ -54,10 +54,16 @@ fn tangents_of<'a>(bakers: impl Iterator<Item = &'a Subject>, mesh: &Mesh, optio
     expected
 }
 
-/// The report of a mesh in which nothing is to be told but its size.
+/// The report of a mesh in which nothing is to be told but its size, and how many triangles span more than half the
+/// texture along u, and no more than all.
 fn nothing_found(mesh: &Mesh) -> TangentReport {
     let (triangles, vertices) = (mesh.triangles().len(), mesh.positions().len());
-    TangentReport { triangles, vertices, ..Default::default() }
+    let span = |triangle: &[u32; 3]| {
+        let u = triangle.map(|vertex| f64::from(mesh.texcoords()[vertex as usize][0]));
+        u.into_iter().fold(f64::MIN, f64::max) - u.into_iter().fold(f64::MAX, f64::min)
+    };
+    let jumps = mesh.triangles().iter().map(span).filter(|span| *span > 0.5 && *span <= 1.0).count();
+    TangentReport { triangles, vertices, jumps, ..Default::default() }
 }
 
 /// The tangents of all corners in one: fails unless they are equal to within `bound` in each component.

@@ -129,7 +129,7 @@ fn unwrapping_does_not_depend_on_the_first_corner() {
 /// A triangle that would have no area left, and one that spans more than the whole texture, stay as they are.
 #[test]
 fn what_cannot_have_jumped_is_not_unwrapped() {
-    for method in METHODS {
+    for method in [TangentMethod::Lengyel, TangentMethod::Mikktspace] {
         for (repeats, jumps) in [(1.0, 2), (3.0, 0)] {
             let square = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
             let texcoords = vec![[0.0, repeats], [repeats, repeats], [repeats, 0.0], [0.0, 0.0]];
@@ -184,7 +184,7 @@ fn triangles_without_area_are_counted_and_their_vertices_get_some_tangent() {
         let made = tangents(&mesh, &by(method));
         let report = made.report;
         assert_eq!((report.without_area, report.without_texture_area, report.unused), (2, 2, 1), "{method}");
-        assert_eq!((report.mirrored, report.copies, report.jumps), (0, 0, 0), "{method}");
+        assert_eq!((report.mirrored, report.copies, report.jumps), (0, 0, nothing_found(&mesh).jumps), "{method}");
         // Lengyel: the triangle along a line has t along it. The three others leave 3 vertices each.
         if method == TangentMethod::Lengyel {
             assert_eq!(report.undirected, 9);
@@ -310,8 +310,9 @@ fn smooth_normals_have_no_seam() {
     }
 }
 
-/// A triangle in the plane z = 0 with t = (1, 0, 0), and normals (sin, 0, cos) L with L off 1 by a hundredth at most,
-/// which stay as they are: t - (n.t) n leaves n (1 - L^2) of n's part of t, 2% of it, over the length that is left.
+/// A triangle in the plane z = 0 with t = (1, 0, 0), and normals (sin, 0, cos) L with L off 1 by a hundredth at most.
+/// Lengyel and Hegde normalise them. MikkTSpace takes them as they are: t - (n.t) n leaves n (1 - L^2) of n's part of t,
+/// 2% of it, over the length that is left.
 #[test]
 fn normals_that_are_slightly_off_unit_leave_a_right_angle_slightly_off() {
     let points = [([0.0, 0.0], [0.0, 1.0]), ([1.0, 0.0], [1.0, 1.0]), ([0.0, 1.0], [0.0, 0.0])];
@@ -322,10 +323,11 @@ fn normals_that_are_slightly_off_unit_leave_a_right_angle_slightly_off() {
             let (sin, cos) = degrees.to_radians().sin_cos();
             let n = [(length * sin) as f32, 0.0, (length * cos) as f32];
             let mesh = changed(&flat, |p| p, |_| n, |uv| uv);
-            let left = [1.0 - length * length * sin * sin, 0.0, -length * length * sin * cos];
-            let rest = left[0].hypot(left[2]);
-            let bound = 0.0201 * 1.01 * sin / rest;
             for method in METHODS {
+                let length = if method == TangentMethod::Mikktspace { length } else { 1.0 };
+                let left = [1.0 - length * length * sin * sin, 0.0, -length * length * sin * cos];
+                let rest = left[0].hypot(left[2]);
+                let bound = if length == 1.0 { 0.0 } else { 0.0201 * 1.01 * sin / rest };
                 let made = tangents(&mesh, &by(method));
                 assert_eq!(made.report, nothing_found(&mesh), "{method}");
                 for &tangent in &made.tangents {
@@ -333,7 +335,7 @@ fn normals_that_are_slightly_off_unit_leave_a_right_angle_slightly_off() {
                     // Five roundings of at most 1, over what is left.
                     let off = angle(direction(tangent), left);
                     assert!(off < 5.0 * 0.5 * STEP / rest + 5.0 * STEP, "{what} is off {left:?} by {off:e}");
-                    let dot = direction(tangent)[0] * f64::from(n[0]) + direction(tangent)[2] * f64::from(n[2]);
+                    let dot = direction(tangent)[0] * sin + direction(tangent)[2] * cos;
                     assert!(dot.abs() <= bound + 5.0 * STEP / rest, "{what}: {dot} is above {bound}");
                     greatest = greatest.max(dot.abs());
                 }
