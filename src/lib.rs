@@ -95,7 +95,9 @@
 //!   bit of the result, but meshes of 1e20 and of 1e-20 have one, where the reference overflows or drops them;
 //! - faces of four corners are triangles here, however they were split; the reference splits a square by itself;
 //! - normals that are zero or longer or shorter than one by more than 1 % are repaired first; others are taken as they
-//!   are, as the reference takes all.
+//!   are, as the reference takes all;
+//! - a group of more than 4096 triangles around one vertex stays whole where the reference would divide it: where two of
+//!   its tangents are exactly opposite.
 //!
 //! Four components are what glTF and engines read. [`Tangents::with_sign_in_lowest_bit`] packs the sign into three, as
 //! FGED2 suggests (for programs only: no file format has it), and [`Tangents::bitangents`] is eq. 7.40.
@@ -122,7 +124,7 @@
 //! | a float normal with a component that is NaN, infinite or beyond 65536 | [`Error::NoDirection`] names the first |
 //! | float components of normals below 2^-25 in magnitude | count as zero |
 //!
-//! Of meshes, all counted in [`TangentReport`]:
+//! Of meshes, counted in [`TangentReport`] where they are no error:
 //!
 //! | case | result |
 //! | --- | --- |
@@ -130,6 +132,8 @@
 //! | an index that is no vertex's | [`Error::Parameter`] names the triangle |
 //! | coordinates of 1e20, of 1e-20 | the bits of unit scale: only ratios matter |
 //! | a triangle without area in the texture | adds nothing to its vertices |
+//! | differences of texture coordinates below 2^-40 of the greatest coordinate | count as zero; not for `Mikktspace` |
+//! | tangents whose sum is below 2^-16 of what it would be if they agreed | cancel; not for `Mikktspace` |
 //! | a triangle without area in space | adds what its edges say; `Hegde`: nothing; `Mikktspace`: as the reference |
 //! | a vertex with such triangles only, or whose tangents cancel (a pole) | the axis furthest from n, projected |
 //! | a vertex without triangles | the same |

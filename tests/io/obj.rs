@@ -80,7 +80,7 @@ fn errors_name_the_line() {
         ("v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 4\n", "line 5: a face refers to position 4 of 3"),
         ("v 0 0 0\nf -2 1 1\n", "line 2: a face refers to position -2, and 1 stand before it"),
         ("v 0 0 0\nvt 0 0\nf 1/1 1/1 1/2\n", "line 3: a face refers to texture coordinate 2 of 1"),
-        ("v 0,0 0 0\n", "line 1: \"0,0\" is no number"),
+        ("v 0,0 0 0\n", "line 1: \"0,0\" is no finite number"),
         ("v 0 0 0\nvn 1 0\n", "line 2: it has 2 of 3 numbers"),
         ("f a b c\n", "line 1: \"a\" is no corner of a face"),
         ("f 1/1/1/1 1 1\n", "line 1: \"1/1/1/1\" is no corner of a face"),

@@ -35,6 +35,13 @@ pub(super) fn read(path: &Path, max_bytes: u64) -> Result<Document> {
         return Err(document.error(reason, "export the model as glTF 2.0"));
     }
 
+    for kind in LISTS {
+        let is_list = |value: &Value| value.as_array().is_some_and(|items| items.iter().all(Value::is_object));
+        if document.json.get(kind).is_some_and(|value| !is_list(value)) {
+            return Err(document.damaged(format!("{kind} is no list of objects")));
+        }
+    }
+
     let mut rest = max_bytes - file.len() as u64;
     for number in 0..document.list("buffers").len() {
         let buffer = read_buffer(&document, number, chunks.bin, rest)?;
@@ -49,6 +56,21 @@ pub(super) fn read(path: &Path, max_bytes: u64) -> Result<Document> {
     }
     Ok(document)
 }
+
+/// What a document holds lists of.
+const LISTS: [&str; 11] = [
+    "accessors",
+    "bufferViews",
+    "buffers",
+    "images",
+    "materials",
+    "meshes",
+    "nodes",
+    "samplers",
+    "scenes",
+    "skins",
+    "textures",
+];
 
 /// A file of at most `limit` bytes.
 pub(in crate::io) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>> {

@@ -24,7 +24,10 @@ impl Uri {
         let path = percent_decoded(uri).map(PathBuf::from);
         match path {
             // A colon in the first part ends a scheme, or a drive's letter; a backslash is a separator on some systems.
-            Some(path) if !uri.is_empty() && stays_inside(&path) && !has_scheme(uri) => Self::Relative(path),
+            Some(path) if !uri.is_empty() && stays_inside(&path) && !has_scheme(uri) => {
+                // One file has one path: without `./`.
+                Self::Relative(path.components().filter(|part| *part != Component::CurDir).collect())
+            }
             _ => Self::Other,
         }
     }
@@ -105,8 +108,7 @@ mod tests {
         }
         // Up and down again stays inside, but no exporter writes it.
         assert_eq!(Uri::of("a/../b"), Uri::Other);
-        for (uri, path) in [("a.bin", "a.bin"), ("a%20b/c%C3%A9.bin", "a b/cé.bin"), ("./a", "./a"), ("a..b", "a..b")]
-        {
+        for (uri, path) in [("a.bin", "a.bin"), ("a%20b/c%C3%A9.bin", "a b/cé.bin"), ("./a", "a"), ("a..b", "a..b")] {
             assert_eq!(Uri::of(uri), Uri::Relative(path.into()), "{uri}");
         }
     }

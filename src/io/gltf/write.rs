@@ -209,7 +209,7 @@ fn move_view(view: &mut Value, places: &[(usize, usize)]) {
     if let Some(&(buffer, begin)) = place {
         view["buffer"] = buffer.into();
         if begin > 0 {
-            view["byteOffset"] = (view["byteOffset"].as_u64().unwrap_or(0) + begin as u64).into();
+            view["byteOffset"] = view["byteOffset"].as_u64().unwrap_or(0).saturating_add(begin as u64).into();
         }
     }
 }
@@ -371,10 +371,11 @@ fn free_name(document: &Document, path: &Path, suffix: &str, without: Option<usi
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let buffers = document.list("buffers").iter().enumerate();
     let buffers = buffers.filter(|(number, _)| Some(*number) != without).map(|(_, buffer)| buffer);
-    let used: Vec<PathBuf> = buffers
+    // On some systems, names that differ in case alone are one.
+    let used: Vec<String> = buffers
         .chain(document.list("images"))
         .filter_map(|object| match Uri::of(object["uri"].as_str().filter(|uri| !uri::is_data(uri))?) {
-            Uri::Relative(path) => Some(path),
+            Uri::Relative(path) => Some(path.to_string_lossy().to_lowercase()),
             _ => None,
         })
         .collect();
@@ -382,7 +383,7 @@ fn free_name(document: &Document, path: &Path, suffix: &str, without: Option<usi
         1 => format!("{stem}{suffix}.bin"),
         _ => format!("{stem}{suffix}{number}.bin"),
     };
-    (1..).map(name).find(|name| !used.contains(&name.into())).expect("one of all numbers")
+    (1..).map(name).find(|name| !used.contains(&name.to_lowercase())).expect("one of all numbers")
 }
 
 fn is_same_folder(one: &Path, other: &Path) -> bool {

@@ -112,7 +112,6 @@ impl Builder {
 
         let positions: Vec<[f32; 3]> = vertices.iter().map(|vertex| obj.positions[vertex[0] as usize]).collect();
         let position = self.add("VEC3", vertices.len(), 34962, bytemuck::cast_slice(&positions));
-        // A file may hold what is not finite: then the mesh is refused by name.
         let bound = |pick: fn(f32, f32) -> f32| -> Vec<f32> {
             (0..3).map(|i| positions.iter().map(|position| position[i]).reduce(pick).unwrap_or_default()).collect()
         };

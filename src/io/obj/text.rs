@@ -134,7 +134,8 @@ const KINDS: [&str; 3] = ["position", "texture coordinate", "normal"];
 
 /// At least `count` numbers.
 fn floats(text: &str, count: usize) -> Result<Vec<f32>, String> {
-    let number = |word: &str| word.parse().map_err(|_| format!("{word:?} is no number"));
+    let finite = |word: &str| word.parse().ok().filter(|number: &f32| number.is_finite());
+    let number = |word: &str| finite(word).ok_or_else(|| format!("{word:?} is no finite number"));
     let values = text.split_whitespace().map(number).collect::<Result<Vec<f32>, _>>()?;
     if values.len() < count {
         return Err(format!("it has {} of {count} numbers", values.len()));

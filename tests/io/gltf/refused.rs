@@ -34,6 +34,18 @@ fn damaged(change: impl FnOnce(&mut Value)) -> String {
 }
 
 #[test]
+fn lists_that_are_none() {
+    for kind in ["accessors", "bufferViews", "buffers", "images", "materials", "meshes", "nodes", "textures"] {
+        for wrong in [json!({}), json!([1]), json!(null), json!("0")] {
+            let document = json!({ "asset": { "version": "2.0" }, kind: wrong });
+            let folder = Folder::new();
+            let message = message(&folder.file("m.gltf", &serde_json::to_vec(&document).unwrap()));
+            assert_eq!(message, format!("{kind} is no list of objects{EXPORT}"));
+        }
+    }
+}
+
+#[test]
 fn compressed_and_unknown_geometry() {
     let way_out = "; write it without compression (gltf-transform copy decodes), compute tangents, then compress";
     let by =

@@ -429,14 +429,17 @@ fn gltf_stays_gltf_with_a_buffer_more() {
 
 #[test]
 fn a_file_that_is_in_use_keeps_its_name() {
-    let folder = Folder::new();
     let (mut file, position, texcoord) = Builder::square();
     file.mesh(json!({ "attributes": { "POSITION": position, "TEXCOORD_0": texcoord }, "material": 0 }));
-    folder.file("m_tangents.bin", &file.bin);
-    let path = folder.file("m.gltf", &file.gltf("m_tangents.bin"));
-    convert(&path, &path);
-    assert_eq!(folder.names(), ["m.gltf", "m_tangents.bin", "m_tangents2.bin"]);
-    assert_tangents(&path);
+    for uri in ["m_tangents.bin", "./m_tangents.bin", "././m%5Ftangents.bin"] {
+        let folder = Folder::new();
+        let buffer = folder.file("m_tangents.bin", &file.bin);
+        let path = folder.file("m.gltf", &file.gltf(uri));
+        convert(&path, &path);
+        assert_eq!(folder.names(), ["m.gltf", "m_tangents.bin", "m_tangents2.bin"], "{uri}");
+        assert_eq!(std::fs::read(buffer).unwrap(), file.bin, "{uri}");
+        assert_tangents(&path);
+    }
 }
 
 #[test]
