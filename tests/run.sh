@@ -47,7 +47,7 @@ check_tests() {
 
 # What a machine needs besides a Rust toolchain: a linker, and three software devices from independent compilers.
 packages=(
-    gcc libc6-dev
+    gcc g++ libc6-dev # g++ for meshopt, beside which tangents are measured
     libvulkan1 mesa-vulkan-drivers
     libegl1 libgles2 libgl1-mesa-dri
     chromium-common # SwiftShader's Vulkan driver, without the browser
