@@ -11,6 +11,9 @@
 //! medians of seconds, and of the ratios to the first row of the case in the same round. What takes long runs once.
 //! RAYON_NUM_THREADS sets the number of threads; bevy_mikktspace and meshopt have one.
 
+#[path = "../tests/support/bevy.rs"]
+mod bevy;
+
 use std::cell::LazyCell;
 use std::hint::black_box;
 use std::time::Instant;
@@ -104,10 +107,10 @@ fn subjects(method: TangentMethod, bakers: &[(String, Baker, Precision)]) -> Vec
         subjects.push(Subject::new("meshopt compatible", meshopt(TangentOptions::Compatible)));
         subjects.push(Subject::new("meshopt", meshopt(TangentOptions::None)));
         subjects.push(Subject::new("bevy_mikktspace", |torus| {
-            let tangents = vec![[0.0; 4]; 3 * torus.mesh.triangles().len()];
-            let mut geometry = Geometry { mesh: &torus.mesh, tangents };
-            bevy_mikktspace::generate_tangents(&mut geometry).expect("no face is too large");
-            black_box(geometry.tangents);
+            let mesh = &torus.mesh;
+            let (normals, indices) = (mesh.normals().expect("a torus has normals"), mesh.triangles().as_flattened());
+            let normal = |corner: usize| normals[indices[corner] as usize];
+            black_box(bevy::tangents(mesh.positions(), mesh.texcoords(), mesh.triangles(), normal));
         }));
     }
     subjects
@@ -220,43 +223,5 @@ impl SplitMix {
         let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         mixed ^ (mixed >> 31)
-    }
-}
-
-/// As bevy_mikktspace sees a mesh.
-struct Geometry<'a> {
-    mesh: &'a Mesh,
-    tangents: Vec<[f32; 4]>,
-}
-
-impl Geometry<'_> {
-    fn vertex(&self, face: usize, corner: usize) -> usize {
-        self.mesh.triangles()[face][corner] as usize
-    }
-}
-
-impl bevy_mikktspace::Geometry for Geometry<'_> {
-    fn num_faces(&self) -> usize {
-        self.mesh.triangles().len()
-    }
-
-    fn num_vertices_of_face(&self, _: usize) -> usize {
-        3
-    }
-
-    fn position(&self, face: usize, corner: usize) -> [f32; 3] {
-        self.mesh.positions()[self.vertex(face, corner)]
-    }
-
-    fn normal(&self, face: usize, corner: usize) -> [f32; 3] {
-        self.mesh.normals().expect("a torus has normals")[self.vertex(face, corner)]
-    }
-
-    fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
-        self.mesh.texcoords()[self.vertex(face, corner)]
-    }
-
-    fn set_tangent(&mut self, tangent: Option<bevy_mikktspace::TangentSpace>, face: usize, corner: usize) {
-        self.tangents[3 * face + corner] = tangent.unwrap_or_default().tangent_encoded();
     }
 }

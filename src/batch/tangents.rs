@@ -65,7 +65,7 @@ pub struct PrimitiveTangents {
 impl ModelTangents {
     /// The sum over the primitives.
     pub fn total(&self) -> TangentReport {
-        self.primitives.iter().fold(TangentReport::default(), |total, primitive| sum(total, primitive.found))
+        self.primitives.iter().map(|primitive| primitive.found).sum()
     }
 
     /// Vertices, of the meshes as they were read, that got normals because their mesh had none.
@@ -82,23 +82,6 @@ impl ModelTangents {
     /// How many primitives of the file have tangents now.
     pub fn with_tangents(&self) -> usize {
         self.primitives.iter().map(|primitive| primitive.shared_by).sum()
-    }
-}
-
-fn sum(a: TangentReport, b: TangentReport) -> TangentReport {
-    TangentReport {
-        triangles: a.triangles + b.triangles,
-        vertices: a.vertices + b.vertices,
-        copies: a.copies + b.copies,
-        mirrored: a.mirrored + b.mirrored,
-        without_area: a.without_area + b.without_area,
-        without_texture_area: a.without_texture_area + b.without_texture_area,
-        jumps: a.jumps + b.jumps,
-        unused: a.unused + b.unused,
-        undirected: a.undirected + b.undirected,
-        normals_made: a.normals_made + b.normals_made,
-        normals_normalised: a.normals_normalised + b.normals_normalised,
-        welded: a.welded + b.welded,
     }
 }
 

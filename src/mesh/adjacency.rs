@@ -2,6 +2,7 @@
 
 use super::Mesh;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Rows of corners in compressed form: row r holds `corners[offsets[r]..offsets[r + 1]]`, ascending.
 ///
@@ -72,6 +73,38 @@ impl CornerAdjacency {
         debug_assert_eq!((offsets.first(), offsets.last()), (Some(&0), Some(&(corners.len() as u32))));
         debug_assert!(offsets.is_sorted());
         Self { offsets, corners }
+    }
+
+    /// The same with other corners, ascending, in some rows, which are named in ascending order; and with more rows at
+    /// the end.
+    pub(crate) fn with_rows<R: IntoIterator<Item = u32>, A: IntoIterator<Item = u32>>(
+        &self,
+        replaced: impl IntoIterator<Item = (usize, R)>,
+        added: impl IntoIterator<Item = A>,
+    ) -> Self {
+        let mut offsets = Vec::with_capacity(self.offsets.len());
+        let mut corners = Vec::with_capacity(self.corners.len());
+        offsets.push(0);
+        // The rows up to a replaced one are copied in one piece.
+        let copy = |rows: Range<usize>, offsets: &mut Vec<u32>, corners: &mut Vec<u32>| {
+            let [begin, end] = [self.offsets[rows.start], self.offsets[rows.end]];
+            let base = corners.len() as u32;
+            offsets.extend(self.offsets[rows.start + 1..=rows.end].iter().map(|row_end| row_end - begin + base));
+            corners.extend_from_slice(&self.corners[begin as usize..end as usize]);
+        };
+        let mut next = 0;
+        for (row, row_corners) in replaced {
+            copy(next..row, &mut offsets, &mut corners);
+            corners.extend(row_corners);
+            offsets.push(corners.len() as u32);
+            next = row + 1;
+        }
+        copy(next..self.rows(), &mut offsets, &mut corners);
+        for row_corners in added {
+            corners.extend(row_corners);
+            offsets.push(corners.len() as u32);
+        }
+        Self::from_rows(offsets, corners)
     }
 
     /// How many rows there are.
@@ -158,6 +191,16 @@ mod tests {
         let rows: Vec<&[u32]> = (0..adjacency.rows()).map(|row| adjacency.row(row)).collect();
         assert_eq!(rows, [&[0, 8][..], &[1, 4, 7], &[2, 3], &[], &[5, 6], &[]]);
         assert_eq!(CornerAdjacency::of_vertices(&[], 0).rows(), 0);
+    }
+
+    #[test]
+    fn rows_are_replaced_and_added() {
+        let adjacency = CornerAdjacency::of_vertices(&[[0, 1, 2], [2, 1, 4], [4, 1, 0]], 6);
+        let changed = adjacency.with_rows([(0, vec![8]), (1, vec![4, 7, 9])], [vec![0], vec![]]);
+        let rows: Vec<&[u32]> = (0..changed.rows()).map(|row| changed.row(row)).collect();
+        assert_eq!(rows, [&[8][..], &[4, 7, 9], &[2, 3], &[], &[5, 6], &[], &[0], &[]]);
+        let unchanged = adjacency.with_rows(None::<(usize, Vec<u32>)>, None::<Vec<u32>>);
+        assert_eq!(unchanged, adjacency);
     }
 
     #[test]

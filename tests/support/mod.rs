@@ -2,6 +2,7 @@
 //! slopes, and meshes.
 
 mod bakers;
+mod bevy;
 mod boundaries;
 mod codes;
 mod compare;

@@ -49,7 +49,10 @@ impl<'a> Fans<'a> {
                 fans[corner as usize] = mirrored;
             }
         }
-        let corners = Cow::Owned(rows_split_by(is_negative, &mixed, adjacency));
+        let row = |vertex: u32| adjacency.row(vertex as usize).iter().copied();
+        let others = mixed.iter().map(|&vertex| (vertex as usize, row(vertex).filter(|&corner| !is_negative(corner))));
+        let negative = mixed.iter().map(|&vertex| row(vertex).filter(|&corner| is_negative(corner)));
+        let corners = Cow::Owned(adjacency.with_rows(others, negative));
         let owners = (0..vertices as u32).chain(mixed).collect();
         Self { corners, owners: Some(Owners { vertices: owners, fans }) }
     }
@@ -64,30 +67,4 @@ impl<'a> Fans<'a> {
     pub fn vertex(&self, fan: usize) -> usize {
         self.owners.as_ref().map_or(fan, |owners| owners.vertices[fan] as usize)
     }
-}
-
-/// The rows of an adjacency, without the corners that are negative in the rows of `mixed`; then those, row by row.
-fn rows_split_by(is_negative: impl Fn(u32) -> bool, mixed: &[u32], adjacency: &CornerAdjacency) -> CornerAdjacency {
-    let (old_offsets, old_corners) = (adjacency.offsets(), adjacency.corners());
-    let mut offsets = Vec::with_capacity(old_offsets.len() + mixed.len());
-    let mut corners = Vec::with_capacity(old_corners.len());
-    offsets.push(0);
-    let mut first = 0;
-    // The rows between mixed ones are copied as a whole.
-    for vertex in mixed.iter().map(|&vertex| vertex as usize).chain([adjacency.rows()]) {
-        let [from, to] = [old_offsets[first], old_offsets[vertex]];
-        let moved = from - corners.len() as u32;
-        corners.extend_from_slice(&old_corners[from as usize..to as usize]);
-        offsets.extend(old_offsets[first + 1..=vertex].iter().map(|end| end - moved));
-        if vertex < adjacency.rows() {
-            corners.extend(adjacency.row(vertex).iter().filter(|&&corner| !is_negative(corner)));
-            offsets.push(corners.len() as u32);
-        }
-        first = vertex + 1;
-    }
-    for &vertex in mixed {
-        corners.extend(adjacency.row(vertex as usize).iter().filter(|&&corner| is_negative(corner)));
-        offsets.push(corners.len() as u32);
-    }
-    CornerAdjacency::from_rows(offsets, corners)
 }

@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::map::Convention;
 use crate::mesh::Mesh;
 use std::borrow::Cow;
+use std::iter::Sum;
 
 /// Tangents of a mesh, whose vertices may have been split.
 ///
@@ -55,6 +56,25 @@ pub struct TangentReport {
     pub normals_normalised: usize,
     /// Vertices whose tangent was set equal to another's across a seam.
     pub welded: usize,
+}
+
+impl Sum for TangentReport {
+    fn sum<I: Iterator<Item = Self>>(reports: I) -> Self {
+        reports.fold(Self::default(), |a, b| Self {
+            triangles: a.triangles + b.triangles,
+            vertices: a.vertices + b.vertices,
+            copies: a.copies + b.copies,
+            mirrored: a.mirrored + b.mirrored,
+            without_area: a.without_area + b.without_area,
+            without_texture_area: a.without_texture_area + b.without_texture_area,
+            jumps: a.jumps + b.jumps,
+            unused: a.unused + b.unused,
+            undirected: a.undirected + b.undirected,
+            normals_made: a.normals_made + b.normals_made,
+            normals_normalised: a.normals_normalised + b.normals_normalised,
+            welded: a.welded + b.welded,
+        })
+    }
 }
 
 impl Tangents {

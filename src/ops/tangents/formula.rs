@@ -209,6 +209,11 @@ pub(crate) fn times(factor: f32, v: [f32; 3]) -> [f32; 3] {
     [factor * v[0], factor * v[1], factor * v[2]]
 }
 
+/// Bits that equal vectors have in common: minus zero is zero.
+pub(crate) fn bits_of_value(v: [f32; 3]) -> [u32; 3] {
+    v.map(|part| (part + 0.0).to_bits())
+}
+
 #[inline(always)]
 pub(crate) fn is_zero(v: [f32; 3]) -> bool {
     (v[0] == 0.0) & (v[1] == 0.0) & (v[2] == 0.0)

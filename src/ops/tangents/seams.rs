@@ -1,7 +1,7 @@
 //! Duplicates at one position whose tangents are nearly equal become equal (FGED2, end of section 7.5).
 
 use super::finish::Vertices;
-use super::{add, dot, project, sub, unit};
+use super::{add, bits_of_value, dot, project, sub, unit};
 use crate::mesh::Mesh;
 use std::collections::HashMap;
 
@@ -10,12 +10,10 @@ use std::collections::HashMap;
 /// each vertex projects the average for itself. Tells how many vertices have another tangent now.
 pub(super) fn weld_seams(mesh: &Mesh, vertices: &mut Vertices<'_>, degrees: f32) -> usize {
     let own = mesh.positions().len();
-    // Minus zero is zero.
-    let bits = |v: [f32; 3]| v.map(|part| (part + 0.0).to_bits());
     let mut places = HashMap::<_, Vec<usize>>::new();
     for vertex in (0..vertices.tangents.len()).filter(|&vertex| vertices.is_directed[vertex]) {
         let source = vertex.checked_sub(own).map_or(vertex, |copy| vertices.copies[copy] as usize);
-        let place = (bits(mesh.positions()[source]), vertices.tangents[vertex][3] > 0.0);
+        let place = (bits_of_value(mesh.positions()[source]), vertices.tangents[vertex][3] > 0.0);
         places.entry(place).or_default().push(vertex);
     }
 

@@ -2,7 +2,7 @@
 
 use super::pieces::of_pieces;
 use super::surface::scale;
-use super::{MissingNormals, add, cross, dot, is_zero, sub, times, unit};
+use super::{MissingNormals, add, bits_of_value, cross, dot, is_zero, sub, times, unit};
 use crate::mesh::{CornerAdjacency, Mesh};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -77,10 +77,8 @@ fn repaired(mesh: &Mesh, normals: &[[f32; 3]]) -> (Vec<[f32; 3]>, usize, usize) 
 /// For each vertex the sum of the normals of all triangles at its position, each as long as twice the area.
 fn smooth_normals(mesh: &Mesh) -> Vec<[f32; 3]> {
     let mut first_at = HashMap::new();
-    // Minus zero is zero.
-    let bits = |p: [f32; 3]| p.map(|part| (part + 0.0).to_bits());
     let places: Vec<u32> =
-        (0..).zip(mesh.positions()).map(|(vertex, &p)| *first_at.entry(bits(p)).or_insert(vertex)).collect();
+        (0..).zip(mesh.positions()).map(|(vertex, &p)| *first_at.entry(bits_of_value(p)).or_insert(vertex)).collect();
     let triangles: Vec<[u32; 3]> =
         mesh.triangles().iter().map(|triangle| triangle.map(|vertex| places[vertex as usize])).collect();
     let adjacency = CornerAdjacency::of_vertices(&triangles, places.len());

@@ -108,29 +108,8 @@ fn with_divided(rows: &CornerAdjacency, divided: &[Divided], fans: &mut [u32]) -
 
     let all = || divided.iter().flat_map(|part| (0..part.welds.len()).map(move |fan| (part, fan)));
     let is_first = |&(part, fan): &(&Divided, usize)| fan == 0 || part.welds[fan - 1] != part.welds[fan];
-    let mut offsets = Vec::with_capacity(rows.rows() + added.len() + 1);
-    let mut corners = Vec::with_capacity(rows.corners().len());
-    offsets.push(0);
-    let mut next = 0;
-    // Rows of undivided welds are copied in one piece, as far as they reach.
-    let copy = |from: usize, to: usize, offsets: &mut Vec<u32>, corners: &mut Vec<u32>| {
-        let (begins, ends) = (&rows.offsets()[from..to], &rows.offsets()[from + 1..to + 1]);
-        let Some((&begin, &end)) = begins.first().zip(ends.last()) else { return };
-        let base = corners.len() as u32;
-        offsets.extend(ends.iter().map(|row_end| row_end - begin + base));
-        corners.extend_from_slice(&rows.corners()[begin as usize..end as usize]);
-    };
-    for (part, fan) in all().filter(is_first) {
-        let weld = part.welds[fan] as usize;
-        copy(next, weld, &mut offsets, &mut corners);
-        corners.extend_from_slice(part.row(fan));
-        offsets.push(corners.len() as u32);
-        next = weld + 1;
-    }
-    copy(next, rows.rows(), &mut offsets, &mut corners);
-    for (part, fan) in all().filter(|fan| !is_first(fan)) {
-        corners.extend_from_slice(part.row(fan));
-        offsets.push(corners.len() as u32);
-    }
-    (CornerAdjacency::from_rows(offsets, corners), added)
+    let replaced = all().filter(is_first);
+    let replaced = replaced.map(|(part, fan)| (part.welds[fan] as usize, part.row(fan).iter().copied()));
+    let others = all().filter(|fan| !is_first(fan)).map(|(part, fan)| part.row(fan).iter().copied());
+    (rows.with_rows(replaced, others), added)
 }

@@ -1,5 +1,8 @@
 //! The oracle is the port of the reference implementation that engines use; bytes are compared.
 
+#[path = "../../../../tests/support/bevy.rs"]
+mod bevy;
+
 use super::Fabric;
 use crate::Baker;
 use crate::map::Convention;
@@ -9,49 +12,10 @@ use crate::ops::tangents::{
     Fans, Surface, TangentMethod, TangentOptions, TangentPlan, is_zero, tangents_of_fans, unit,
 };
 
-/// A mesh as the oracle reads it, and what it answers.
-struct Oracle<'a> {
-    mesh: &'a Mesh,
-    tangents: Vec<Option<[f32; 4]>>,
-}
-
-impl Oracle<'_> {
-    /// Of each corner; `None` where it has none.
-    fn tangents(mesh: &Mesh) -> Vec<Option<[f32; 4]>> {
-        let mut oracle = Oracle { mesh, tangents: vec![None; 3 * mesh.triangles().len()] };
-        bevy_mikktspace::generate_tangents(&mut oracle).unwrap();
-        oracle.tangents
-    }
-
-    fn vertex(&self, face: usize, corner: usize) -> usize {
-        self.mesh.triangles()[face][corner] as usize
-    }
-}
-
-impl bevy_mikktspace::Geometry for Oracle<'_> {
-    fn num_faces(&self) -> usize {
-        self.mesh.triangles().len()
-    }
-
-    fn num_vertices_of_face(&self, _: usize) -> usize {
-        3
-    }
-
-    fn position(&self, face: usize, corner: usize) -> [f32; 3] {
-        self.mesh.positions()[self.vertex(face, corner)]
-    }
-
-    fn normal(&self, face: usize, corner: usize) -> [f32; 3] {
-        self.mesh.normals().unwrap()[self.vertex(face, corner)]
-    }
-
-    fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
-        self.mesh.texcoords()[self.vertex(face, corner)]
-    }
-
-    fn set_tangent(&mut self, tangent: Option<bevy_mikktspace::TangentSpace>, face: usize, corner: usize) {
-        self.tangents[3 * face + corner] = tangent.map(|tangent| tangent.tangent_encoded());
-    }
+/// What the oracle gives each corner; `None` where it has no answer.
+fn reference(mesh: &Mesh) -> Vec<Option<[f32; 4]>> {
+    let normal = |corner: usize| mesh.normals().unwrap()[mesh.triangles().as_flattened()[corner] as usize];
+    bevy::tangents(mesh.positions(), mesh.texcoords(), mesh.triangles(), normal)
 }
 
 /// Of each corner; `None` where its fan is empty.
@@ -83,7 +47,7 @@ fn bits(tangents: &[Option<[f32; 4]>]) -> Vec<Option<[u32; 4]>> {
 }
 
 fn assert_equal(mesh: &Mesh, name: &str) {
-    let (expected, found) = (Oracle::tangents(mesh), ours(mesh));
+    let (expected, found) = (reference(mesh), ours(mesh));
     let differ = |(a, b): (Option<[u32; 4]>, Option<[u32; 4]>)| a != b;
     let differences: Vec<bool> = bits(&expected).into_iter().zip(bits(&found)).map(differ).collect();
     if let Some(corner) = differences.iter().position(|&differs| differs) {
@@ -327,7 +291,7 @@ fn the_baker_s_tangents_are_the_reference_s() {
         .unwrap();
     let triangles = made.triangles.as_deref().unwrap_or(mesh.triangles());
     let found: Vec<_> = triangles.as_flattened().iter().map(|&vertex| Some(made.tangents[vertex as usize])).collect();
-    assert_eq!(bits(&found), bits(&Oracle::tangents(&mesh)));
+    assert_eq!(bits(&found), bits(&reference(&mesh)));
     assert_eq!(made.report.undirected, 0);
 }
 
@@ -389,5 +353,5 @@ fn vertices_of_any_size_are_welded() {
     }
     let largest = mesh(&scaled(&points, 2f32.powi(126)), triangles);
     assert!(largest.positions().as_flattened().iter().any(|part| *part > 1.7e38));
-    assert_ne!(bits(&Oracle::tangents(&largest)), bits(&expected), "the reference does not");
+    assert_ne!(bits(&reference(&largest)), bits(&expected), "the reference does not");
 }
