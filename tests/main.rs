@@ -15,3 +15,4 @@ mod sabotage;
 mod stream;
 mod support;
 mod tangents;
+mod verify;

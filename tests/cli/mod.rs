@@ -13,5 +13,5 @@ mod normal;
 mod parallax;
 mod report;
 mod settings;
-mod support;
+pub mod support;
 mod tangents;
