@@ -60,10 +60,11 @@ impl From<Error> for Fault {
     }
 }
 
-impl From<Fault> for Error {
-    fn from(fault: Fault) -> Self {
-        match fault {
-            Fault::OutOfMemory(error) | Fault::Other(error) => error,
+impl Fault {
+    /// What is told of it. No `From`: a second one for the public error would leave its users' `?` without a type.
+    pub fn into_error(self) -> Error {
+        match self {
+            Self::OutOfMemory(error) | Self::Other(error) => error,
         }
     }
 }
@@ -149,7 +150,7 @@ impl Device {
     /// Runs calls into wgpu, and returns whatever is wrong with them as an error: what it would report elsewhere, to
     /// whom it may concern, and its panics, which a lost device can cause (gfx-rs/wgpu: poll).
     pub fn guarded<T>(&self, work: impl FnOnce() -> Result<T>) -> Result<T> {
-        Ok(self.attempt(work)?)
+        self.attempt(work).map_err(Fault::into_error)
     }
 
     /// The same; tells whether memory was short.
