@@ -90,7 +90,7 @@ impl<'a> OwnPipeline<'a> {
                 encoder.copy_buffer_to_buffer(buffer, 0, &download, 0, size);
                 downloads.push(download);
             }
-            Ok((downloads, self.device.queue.submit([encoder.finish()])))
+            Ok((downloads, self.device.submit(None, encoder.finish())))
         })?;
         self.device.guarded(|| {
             let wanted = downloads.iter().map(|download| (download, MapMode::Read));
