@@ -140,6 +140,7 @@ mod names;
 mod ops;
 pub mod shading;
 pub mod stream;
+pub mod verify;
 
 pub use baker::{Baked, Baker, Blended, Ran};
 pub use devices::{Device, devices};
