@@ -3,6 +3,7 @@
 mod blend;
 #[cfg(feature = "cli")]
 mod cli;
+mod extremes;
 mod faults;
 #[cfg(feature = "gpu")]
 mod gpu;
@@ -16,3 +17,4 @@ mod sabotage;
 mod stream;
 mod support;
 mod tangents;
+mod verify;

@@ -17,6 +17,8 @@ mod layers;
 mod mesh_parts;
 mod operation;
 mod output;
+mod own_kernel;
+mod pace;
 mod parallax;
 #[cfg(test)]
 mod reflection;
@@ -40,47 +42,51 @@ use crate::stream::{CodeSink, HeightBands, LayerBands};
 use device::Device;
 pub use hosted::{CodeTarget, HeightSource, Hosted, NormalBake};
 use layers::LayerOperation;
-use operation::{Operation, TEXELS_PER_INVOCATION, WORKGROUP, output_row_bytes};
+use operation::{Operation, greatest_row_bytes, row_groups};
+pub use own_kernel::Binding;
+pub(crate) use own_kernel::OwnPipeline;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use tangents::Limits;
 
-/// A GPU that has passed its self-test.
-pub(crate) struct Gpu {
+/// A GPU that runs whatever it is given, and may compute wrong bytes.
+pub(crate) struct Untested {
     device: Device,
+}
+
+/// A GPU that has passed its self-test, and tests each kernel before its first job.
+pub(crate) struct Gpu {
+    untested: Untested,
 }
 
 /// Codes of a band stay near this many bytes: enough to fill a GPU, little enough to stay far below a driver's
 /// patience with one dispatch.
 const BAND_BYTES: usize = 8 << 20;
 
-/// The most workgroups of one dispatch in each dimension, on every WebGPU device.
-const GREATEST_DISPATCH: usize = 65_535;
-
-impl Gpu {
-    /// Opens the adapter that `selector` means, or the best one, and tests it.
+impl Untested {
+    /// Opens the adapter that `selector` means, or the best one.
     ///
     /// # Errors
-    /// [`crate::Error::Device`] if there is none, or it does not open, or it computes wrong bytes.
+    /// [`crate::Error::Device`] if there is none, or it does not open.
     pub fn open(selector: Option<&str>) -> Result<Self> {
         Self::open_adapter(&adapters::select(selector)?)
     }
 
-    /// Opens the first real GPU that passes its self-test; else says why there is none.
-    pub fn open_real() -> Result<Self, String> {
-        let mut reasons = Vec::new();
-        for adapter in adapters::primary() {
-            let info = adapter.get_info();
-            if !adapters::is_candidate(&info) {
-                reasons.push(format!("{} is {}", adapters::describe(&info), adapters::kind(&info)));
-                continue;
-            }
-            match Self::open_adapter(&adapter) {
-                Ok(gpu) => return Ok(gpu),
-                Err(error) => reasons.push(error.to_string()),
-            }
-        }
-        let found = if reasons.is_empty() { "none found".into() } else { reasons.join("; ") };
-        Err(format!("no real GPU: {found}"))
+    /// Every adapter of this machine, the best first, or why it does not open.
+    pub fn all() -> Vec<Result<Self>> {
+        adapters::all().iter().map(Self::open_adapter).collect()
+    }
+
+    /// Compiles a kernel of somebody else's.
+    ///
+    /// # Errors
+    /// [`crate::Error::Device`] with what the compiler says.
+    pub fn compile(&self, wgsl: &str, entry_point: &str, constants: &[(&str, f64)]) -> Result<OwnPipeline<'_>> {
+        OwnPipeline::new(&self.device, wgsl, entry_point, constants)
+    }
+
+    /// Runs other texts in place of the kernels' own.
+    pub fn replace_kernels(&self, text: impl Fn(&str) -> String) {
+        sources().iter().for_each(|source| self.device.substitute(*source, &text(&source.text())));
     }
 
     fn open_adapter(adapter: &wgpu::Adapter) -> Result<Self> {
@@ -89,31 +95,27 @@ impl Gpu {
             let name = adapters::describe(&adapter.get_info());
             Err(Error::device(name, format_args!("wgpu failed: {}", device::panic_text(panic.as_ref()))))
         });
-        let gpu = Self { device: opened? };
-        self_test::run(&gpu.device)?;
-        Ok(gpu)
+        Ok(Self { device: opened? })
     }
 
     /// Refuses rows that this device cannot take.
     fn check_width(&self, operation: &impl Operation) -> Result<()> {
         let width = operation.width();
-        // A band has at least one row of each layer, and a mark for each row of its maps.
-        let inputs: usize = operation.inputs().iter().sum();
-        let outputs: usize = output_row_bytes(operation).iter().sum::<usize>() + 4;
-        let groups = width.div_ceil(TEXELS_PER_INVOCATION * WORKGROUP);
-        if inputs.max(outputs) > self.device.greatest_binding() || groups > GREATEST_DISPATCH {
-            return Err(self.device.error(format_args!("rows of {width} texels are too wide for it")));
+        let (bytes, greatest_binding) = (greatest_row_bytes(operation), self.device.greatest_binding());
+        if bytes > greatest_binding {
+            return Err(self.device.error(format_args!(
+                "rows of {width} texels are too wide for it: {bytes} bytes in a buffer of at most {greatest_binding}"
+            )));
+        }
+        let (groups, greatest_dispatch) = (row_groups(width), self.device.greatest_dispatch());
+        if groups > greatest_dispatch {
+            return Err(self.device.error(format_args!(
+                "rows of {width} texels are too wide for it: {groups} workgroups where {greatest_dispatch} are allowed"
+            )));
         }
         Ok(())
     }
 
-    /// Refuses rows that this device cannot take, and a kernel that computes wrong bytes; each kernel is tested once.
-    fn accept_bake(&self, plan: &BakePlan) -> Result<()> {
-        self.check_width(plan)?;
-        self_test::accept_bake(&self.device, plan)
-    }
-
-    /// Runs an operation on several maps.
     fn run_layers(
         &self,
         plan: &impl LayerOperation,
@@ -121,12 +123,11 @@ impl Gpu {
         sink: &mut dyn CodeSink,
     ) -> Result<()> {
         self.check_width(plan)?;
-        layers::accept(&self.device, plan)?;
         layers::run(&self.device, plan, bands, &mut [sink])
     }
 }
 
-impl Backend for Gpu {
+impl Backend for Untested {
     fn kind(&self) -> &'static str {
         "gpu"
     }
@@ -136,11 +137,11 @@ impl Backend for Gpu {
     }
 
     fn band_rows(&self, row: RowBytes) -> usize {
-        (BAND_BYTES / row.read.max(row.written)).clamp(1, GREATEST_DISPATCH)
+        (BAND_BYTES / row.read.max(row.written)).max(1)
     }
 
     fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
-        self.accept_bake(plan)?;
+        self.check_width(plan)?;
         bake::run(&self.device, plan, bands, sinks)
     }
 
@@ -153,9 +154,86 @@ impl Backend for Gpu {
     }
 
     fn tangents(&self, plan: &TangentPlan<'_>, out: &mut [[f32; 4]]) -> Result<()> {
-        tangents_self_test::accept(&self.device, plan)?;
         tangents::run(&self.device, plan, Limits::of(&self.device), out)
     }
+}
+
+impl Gpu {
+    /// Opens the adapter that `selector` means, or the best one, and tests it.
+    ///
+    /// # Errors
+    /// [`crate::Error::Device`] if there is none, or it does not open, or it computes wrong bytes.
+    pub fn open(selector: Option<&str>) -> Result<Self> {
+        Self::tested(Untested::open(selector)?)
+    }
+
+    /// Opens the first real GPU that passes its self-test; else says why there is none.
+    pub fn open_real() -> Result<Self, String> {
+        let mut reasons = Vec::new();
+        for adapter in adapters::primary() {
+            let info = adapter.get_info();
+            if !adapters::is_candidate(&info) {
+                reasons.push(format!("{} is {}", adapters::describe(&info), adapters::kind(&info)));
+                continue;
+            }
+            match Untested::open_adapter(&adapter).and_then(Self::tested) {
+                Ok(gpu) => return Ok(gpu),
+                Err(error) => reasons.push(error.to_string()),
+            }
+        }
+        let found = if reasons.is_empty() { "none found".into() } else { reasons.join("; ") };
+        Err(format!("no real GPU: {found}"))
+    }
+
+    fn tested(untested: Untested) -> Result<Self> {
+        self_test::run(&untested.device)?;
+        Ok(Self { untested })
+    }
+
+    /// Refuses rows that this device cannot take, and a kernel that computes wrong bytes; each kernel is tested once.
+    fn accept_bake(&self, plan: &BakePlan) -> Result<()> {
+        self.untested.check_width(plan)?;
+        self_test::accept_bake(&self.untested.device, plan)
+    }
+}
+
+impl Backend for Gpu {
+    fn kind(&self) -> &'static str {
+        self.untested.kind()
+    }
+
+    fn device(&self) -> String {
+        self.untested.device()
+    }
+
+    fn band_rows(&self, row: RowBytes) -> usize {
+        self.untested.band_rows(row)
+    }
+
+    fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
+        self.accept_bake(plan)?;
+        self.untested.bake(plan, bands, sinks)
+    }
+
+    fn blend(&self, plan: &BlendPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {
+        layers::accept(&self.untested.device, plan)?;
+        self.untested.blend(plan, bands, sink)
+    }
+
+    fn parallax(&self, plan: &ParallaxPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {
+        layers::accept(&self.untested.device, plan)?;
+        self.untested.parallax(plan, bands, sink)
+    }
+
+    fn tangents(&self, plan: &TangentPlan<'_>, out: &mut [[f32; 4]]) -> Result<()> {
+        tangents_self_test::accept(&self.untested.device, plan)?;
+        self.untested.tangents(plan, out)
+    }
+}
+
+/// Every kernel's text.
+pub(crate) fn sources() -> &'static [kernel::KernelSource] {
+    &kernel::ALL
 }
 
 /// All adapters, each opened and tested, in the order in which `auto` would choose.
@@ -163,7 +241,8 @@ pub(crate) fn devices() -> Vec<crate::Device> {
     let mut picked_one = false;
     let describe = |adapter: wgpu::Adapter| {
         let info = adapter.get_info();
-        let self_test = Gpu::open_adapter(&adapter).map(drop).map_err(|error| error.to_string());
+        let self_test =
+            Untested::open_adapter(&adapter).and_then(Gpu::tested).map(drop).map_err(|error| error.to_string());
         let candidate = adapters::is_candidate(&info);
         let picked = candidate && self_test.is_ok() && !picked_one;
         picked_one |= picked;

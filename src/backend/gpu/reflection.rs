@@ -4,7 +4,7 @@ use super::input::Input;
 use super::kernel::{ALL, BAKE_FLOAT_HEIGHTS, BAKE_FLOATS, BAKE_INTEGERS, Kernel, KernelSource};
 use super::operation::{Operation, PARAMS_BYTES, WORKGROUP};
 use super::output::Output;
-use super::{Gpu, bake, blend, layer_tests, parallax, self_test, tangent_tests, tangents};
+use super::{Device, Gpu, Untested, bake, blend, layer_tests, parallax, self_test, tangent_tests, tangents};
 use crate::exact::Scale;
 use crate::map::{Depth, Encoding, HeightType, NormalFormat, ParallaxFormat, Size};
 use crate::ops::Precision;
@@ -93,9 +93,7 @@ fn host_params(entry_point: &str) -> (Vec<Word>, usize) {
 /// Everything that the host takes for granted about a kernel's text.
 fn check(text: &str, entry_point: &str) -> Result<(), String> {
     let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
-    let mut validator =
-        naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
-    validator.validate(&module).map_err(|error| error.emit_to_string(text))?;
+    validator().validate(&module).map_err(|error| error.emit_to_string(text))?;
 
     let [entry] = &module.entry_points[..] else { return Err("not one entry point".into()) };
     if entry.name != entry_point || entry.workgroup_size != [WORKGROUP as u32, 1, 1] {
@@ -106,6 +104,20 @@ fn check(text: &str, entry_point: &str) -> Result<(), String> {
     }
     check_bindings(&module)?;
     check_params(&module, entry_point)
+}
+
+/// A file of the shader library is a module of its own: functions alone, for any shader to call.
+fn check_pure(text: &str) -> Result<(), String> {
+    let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
+    validator().validate(&module).map_err(|error| error.emit_to_string(text))?;
+    if module.functions.is_empty() || !module.entry_points.is_empty() || !module.global_variables.is_empty() {
+        return Err("not functions alone".into());
+    }
+    Ok(())
+}
+
+fn validator() -> naga::valid::Validator {
+    naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty())
 }
 
 fn check_bindings(module: &naga::Module) -> Result<(), String> {
@@ -195,6 +207,10 @@ fn every_file_under_kernels_is_registered() {
                 continue;
             }
             let text = std::fs::read_to_string(&path).unwrap();
+            if path.parent().is_some_and(|folder| folder.ends_with("shading")) {
+                check_pure(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+                continue;
+            }
             assert!(texts.iter().any(|registered| registered.contains(&text)), "{} is in no kernel", path.display());
             files += 1;
         }
@@ -255,9 +271,9 @@ fn a_device_that_computes_wrong_bytes_fails_its_self_test() {
     ] {
         let text = source.text();
         assert!(text.contains(from), "{}: no {from:?}", source.name);
-        let gpu = Gpu { device: super::Device::open(&adapter).unwrap() };
-        gpu.device.substitute(source, &text.replacen(from, to, 1));
-        let error = self_test::run(&gpu.device).expect_err(source.name).to_string();
+        let device = Device::open(&adapter).unwrap();
+        device.substitute(source, &text.replacen(from, to, 1));
+        let error = self_test::run(&device).expect_err(source.name).to_string();
         assert!(error.contains("fails the self-test"), "{}: {error}", source.name);
     }
 }
@@ -285,12 +301,12 @@ fn a_kernel_that_computes_wrong_bytes_is_refused_before_its_first_job() {
         let kernel = plan.kernel();
         let text = kernel.source.text();
         assert!(text.contains(from), "{}: no {from:?}", kernel.source.name);
-        let gpu = Gpu { device: super::Device::open(&adapter).unwrap() };
-        self_test::accept_bake(&gpu.device, &plan).unwrap();
-        let gpu = Gpu { device: super::Device::open(&adapter).unwrap() };
-        gpu.device.substitute(kernel.source, &text.replacen(from, to, 1));
+        self_test::accept_bake(&Device::open(&adapter).unwrap(), &plan).unwrap();
+        let device = Device::open(&adapter).unwrap();
+        device.substitute(kernel.source, &text.replacen(from, to, 1));
+        let gpu = Gpu { untested: Untested { device } };
         let error = gpu.accept_bake(&plan).expect_err(from).to_string();
         assert!(error.contains("fails the self-test: bake: wrong"), "{from}: {error}");
-        assert!(!gpu.device.is_tested(&kernel), "{from}");
+        assert!(!gpu.untested.device.is_tested(&kernel), "{from}");
     }
 }

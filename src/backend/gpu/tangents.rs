@@ -1,18 +1,21 @@
 //! Tangents on a device: a frame for each triangle, then a tangent for each fan.
 
-use super::device::Device;
+use super::device::{Device, Fault};
 use super::kernel::{
     FRAMES_HEGDE, FRAMES_HEGDE_FAST, FRAMES_LENGYEL, FRAMES_LENGYEL_FAST, FRAMES_MIKKTSPACE, FRAMES_MIKKTSPACE_FAST,
     Kernel, TANGENTS_SUMMED, TANGENTS_SUMMED_FAST, TANGENTS_WEIGHTED, TANGENTS_WEIGHTED_FAST,
 };
 use super::mesh_parts::{Parts, Words};
 use super::operation::WORKGROUP;
-use super::transfer::Mapping;
-use crate::error::Result;
+use super::pace::Work;
+use super::slot::Slot;
+use super::transfer::{Mapping, RING};
+use crate::error::{Error, Result};
 use crate::ops::Precision;
 use crate::ops::tangents::{TangentMethod, TangentPlan, tangent_of_fan};
 use bytemuck::{NoUninit, Pod, Zeroable};
 use rayon::prelude::*;
+use std::collections::VecDeque;
 use std::ops::Range;
 use wgpu::{BufferViewMut, CommandEncoderDescriptor, ComputePipeline};
 
@@ -39,7 +42,7 @@ pub(super) struct Params {
 pub(super) struct Limits {
     /// Words of a buffer.
     pub words: usize,
-    /// Triangles or fans of a dispatch: a slow GPU computes that many in about 50 ms.
+    /// Triangles or fans of a dispatch at first: a slow GPU computes that many in about 50 ms.
     pub dispatch: usize,
     /// Corners that one invocation sums; the CPU sums longer rows. Mesa's llvmpipe leaves a loop after 65535 turns,
     /// and a driver's patience ends too.
@@ -77,16 +80,28 @@ fn frame_words(method: TangentMethod) -> usize {
     }
 }
 
-/// Computes the tangent of each fan, untested; meshes beyond the limits in parts.
+/// Computes the tangent of each fan, untested; meshes beyond the limits or the free memory in parts.
 pub(super) fn run(device: &Device, plan: &TangentPlan<'_>, limits: Limits, out: &mut [[f32; 4]]) -> Result<()> {
-    let pipelines = device.guarded(|| Ok(kernels(plan).map(|kernel| device.pipeline(&kernel))))?;
-    let mut parts = Parts::new(plan, frame_words(plan.method), limits.words);
+    let kernels = kernels(plan);
+    let pipelines = device.guarded(|| Ok(kernels.each_ref().map(|kernel| device.pipeline(kernel))))?;
+    let frame_words = frame_words(plan.method);
+    let mut parts = Parts::new(plan, frame_words, limits.words, 0);
+    let mut refused = None;
     let mut done = 0;
     while done < out.len() {
-        let too_large = |fan| device.error(format_args!("a tangent of too many triangles for it: that of fan {fan}"));
-        let fans = parts.next().map_err(too_large)?;
-        done = fans.end;
-        run_part(device, &pipelines, plan, &parts, fans.clone(), limits, &mut out[fans])?;
+        let fans = parts.next().map_err(|fan| refused.take().unwrap_or_else(|| too_large(device, fan)))?;
+        let counts = [&parts.vertices, &parts.triangles].map(|numbers| numbers.of.len());
+        let words = Words::new([counts[0], counts[1], fans.len(), corners_of(plan, &fans).len()], frame_words);
+        let job = Job { device, kernels: &kernels, pipelines: &pipelines, plan, parts: &parts, words, limits };
+        match job.run(fans.clone(), &mut out[fans.clone()]) {
+            Ok(()) => done = fans.end,
+            Err(Fault::OutOfMemory(error)) => {
+                device.free_slots();
+                refused = Some(error);
+                parts = Parts::new(plan, frame_words, words.greatest() / 2, done);
+            }
+            Err(Fault::Other(error)) => return Err(error),
+        }
     }
     for (fan, tangent) in out.iter_mut().enumerate().filter(|(fan, _)| plan.fans.corners.row(*fan).len() > limits.row) {
         *tangent = tangent_of_fan(plan, fan);
@@ -94,26 +109,50 @@ pub(super) fn run(device: &Device, plan: &TangentPlan<'_>, limits: Limits, out: 
     Ok(())
 }
 
-/// Computes the tangents of a part of the fans.
-fn run_part(
-    device: &Device,
-    pipelines: &[ComputePipeline; 2],
-    plan: &TangentPlan<'_>,
-    parts: &Parts<'_>,
-    fans: Range<usize>,
-    limits: Limits,
-    out: &mut [[f32; 4]],
-) -> Result<()> {
-    let triangles = parts.triangles.of.len();
-    let corners = corners_of(plan, &fans).len();
-    let frame_words = frame_words(plan.method);
-    let words = Words::new([parts.vertices.of.len(), triangles, fans.len(), corners], frame_words);
-    let tangents = frame_words * triangles;
-    let (input_bytes, output_bytes) = (4 * words.inputs as u64, 4 * words.outputs as u64);
-    let nonce = device.fresh_nonce() & !NEGATIVE;
+fn too_large(device: &Device, fan: usize) -> Error {
+    device.error(format_args!("a tangent of too many triangles for it: that of fan {fan}"))
+}
 
-    let (slot, mapping) = device.guarded(|| {
-        let slot = device.slot(input_bytes, output_bytes);
+/// The tangents of a part of the fans.
+struct Job<'a> {
+    device: &'a Device,
+    kernels: &'a [Kernel; 2],
+    pipelines: &'a [ComputePipeline; 2],
+    plan: &'a TangentPlan<'a>,
+    parts: &'a Parts<'a>,
+    words: Words,
+    limits: Limits,
+}
+
+impl Job<'_> {
+    fn run(&self, fans: Range<usize>, out: &mut [[f32; 4]]) -> Result<(), Fault> {
+        let Self { device, words, .. } = self;
+        let slot = device.slot(4 * words.inputs as u64, 4 * words.outputs as u64)?;
+        let nonce = device.fresh_nonce() & !NEGATIVE;
+        let mapping = device.attempt(|| self.launch(&slot, fans.clone(), nonce))?;
+        device.attempt(|| {
+            mapping.wait(device)?;
+            let view = device.returned(&slot)?;
+            let computed = bytemuck::cast_slice::<u8, [u32; 4]>(&view[..16 * fans.len()]);
+            for (fan, (&[x, y, z, proof], tangent)) in fans.zip(computed.iter().zip(out)) {
+                if proof & !NEGATIVE != nonce {
+                    return Err(device.give_up(format_args!("tangent {fan} came back without having been computed")));
+                }
+                let w = if proof & NEGATIVE == 0 { 1.0 } else { -1.0 };
+                *tangent = [f32::from_bits(x), f32::from_bits(y), f32::from_bits(z), w];
+            }
+            drop(view);
+            slot.download.unmap();
+            Ok(())
+        })?;
+        device.keep(slot);
+        Ok(())
+    }
+
+    /// Sends the part to the device.
+    fn launch(&self, slot: &Slot, fans: Range<usize>, nonce: u32) -> Result<Mapping> {
+        let Self { device, plan, parts, words, limits, .. } = self;
+        let tangents = frame_words(plan.method) * parts.triangles.of.len();
         let view = slot.upload.get_mapped_range_mut(..).map_err(|error| device.error(error))?;
         let longest_row = limits.row as u32;
         let params = Params { nonce, longest_row, tangents: tangents as u32, ..write(view, plan, parts, &fans) };
@@ -121,54 +160,52 @@ fn run_part(
         let encoder = |label| device.device.create_command_encoder(&CommandEncoderDescriptor { label: Some(label) });
 
         let mut upload = encoder("upload");
-        upload.copy_buffer_to_buffer(&slot.upload, 0, &slot.inputs, 0, input_bytes);
-        device.queue.submit([upload.finish()]);
+        upload.copy_buffer_to_buffer(&slot.upload, 0, &slot.inputs, 0, 4 * words.inputs as u64);
+        device.submit(None, upload.finish());
+        self.dispatch(slot, params, fans.len())?;
+        let mut download = encoder("download");
+        download.copy_buffer_to_buffer(&slot.outputs, 4 * tangents as u64, &slot.download, 0, 16 * fans.len() as u64);
+        let submission = device.submit(None, download.finish());
+        Ok(Mapping::of(slot, submission))
+    }
+
+    /// Runs both kernels, in dispatches that the device computes in time.
+    fn dispatch(&self, slot: &Slot, params: Params, fans: usize) -> Result<()> {
+        let Self { device, .. } = self;
         let bindings = device.bind(
             slot.params.as_entire_binding(),
             slot.inputs.as_entire_binding(),
             slot.outputs.as_entire_binding(),
         );
-        for (pipeline, count) in pipelines.iter().zip([triangles, fans.len()]) {
-            for first in (0..count).step_by(limits.dispatch) {
-                let end = count.min(first + limits.dispatch);
+        let mut flying = VecDeque::new();
+        let counts = [self.parts.triangles.of.len(), fans];
+        for ((kernel, pipeline), count) in self.kernels.iter().zip(self.pipelines).zip(counts) {
+            let mut first = 0;
+            while first < count {
+                if flying.len() == RING {
+                    flying.pop_front().map_or(Ok(()), |oldest| device.wait(&oldest))?;
+                }
+                let in_time = device.pace.most_items(kernel).max(WORKGROUP);
+                let items = in_time.min(self.limits.dispatch).min(count - first);
+                let end = first + items;
                 let params = Params { first: first as u32, end: end as u32, ..params };
                 // Written before what is submitted next, and after what was before. A submission each, since a
                 // driver's patience is with a submission.
                 device.queue.write_buffer(&slot.params, 0, bytemuck::bytes_of(&params));
-                let mut dispatch = encoder("tangents");
+                let label = Some("tangents");
+                let mut dispatch = device.device.create_command_encoder(&CommandEncoderDescriptor { label });
                 let mut pass = dispatch.begin_compute_pass(&Default::default());
                 pass.set_pipeline(pipeline);
                 pass.set_bind_group(0, &bindings, &[]);
-                pass.dispatch_workgroups((end - first).div_ceil(WORKGROUP) as u32, 1, 1);
+                pass.dispatch_workgroups(items.div_ceil(WORKGROUP) as u32, 1, 1);
                 drop(pass);
-                device.queue.submit([dispatch.finish()]);
+                let work = Work { kernel: kernel.clone(), items };
+                flying.push_back(device.submit(Some(work), dispatch.finish()));
+                first = end;
             }
         }
-        let mut download = encoder("download");
-        let bytes = 16 * fans.len() as u64;
-        download.copy_buffer_to_buffer(&slot.outputs, 4 * tangents as u64, &slot.download, 0, bytes);
-        let submission = device.queue.submit([download.finish()]);
-        let mapping = Mapping::of(&slot, submission);
-        Ok((slot, mapping))
-    })?;
-
-    device.guarded(|| {
-        mapping.wait(device)?;
-        let view = slot.download.get_mapped_range(..).map_err(|error| device.error(error))?;
-        let computed = bytemuck::cast_slice::<u8, [u32; 4]>(&view[..16 * fans.len()]);
-        for (fan, (&[x, y, z, proof], tangent)) in fans.zip(computed.iter().zip(&mut *out)) {
-            if proof & !NEGATIVE != nonce {
-                return Err(device.give_up(format_args!("tangent {fan} came back without having been computed")));
-            }
-            let w = if proof & NEGATIVE == 0 { 1.0 } else { -1.0 };
-            *tangent = [f32::from_bits(x), f32::from_bits(y), f32::from_bits(z), w];
-        }
-        drop(view);
-        slot.download.unmap();
         Ok(())
-    })?;
-    device.keep(slot);
-    Ok(())
+    }
 }
 
 /// The corners of some fans, one after the other.
