@@ -79,9 +79,9 @@ fn interruptible() -> Arc<Monitor> {
             end_at_once();
         }
         let text = "interrupted: what is being written is dropped; interrupt again to end at once";
-        let saying = std::thread::Builder::new().spawn(move || print::say(text));
-        *SAYING.lock().unwrap_or_else(PoisonError::into_inner) = saying.ok();
+        let mut saying = SAYING.lock().unwrap_or_else(PoisonError::into_inner);
         watched.cancel();
+        *saying = std::thread::Builder::new().name("interrupt".into()).spawn(move || print::say(text)).ok();
     };
     if let Err(error) = ctrlc::set_handler(stop) {
         print::say(format_args!("warning: an interrupt will not end cleanly: {error}"));

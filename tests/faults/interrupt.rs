@@ -1,10 +1,8 @@
 //! An interrupt ends a run cleanly, a second one at once.
 
-use super::paused::Paused;
-use crate::cli::support::{Folder, Run, bumps8, read_png};
+use crate::cli::support::{Folder, Run, read_png};
 use crate::cli::tangents::{Model, sheet};
 use std::process::{Command, Output, Stdio};
-use std::time::{Duration, Instant};
 
 /// So many that no machine is done before the signal comes.
 const FILES: usize = 400;
@@ -76,85 +74,6 @@ fn an_interrupted_folder_of_two_maps_leaves_both_of_a_texture_or_none_and_can_be
         folder.run(&[&arguments[..], &["--quiet"]].concat()).ends(0);
         assert_eq!(folder.files("out").len(), 2 * TEXTURES);
     }
-}
-
-#[test]
-fn a_second_interrupt_ends_the_run_at_once() {
-    let folder = Folder::new();
-    for name in ["a", "b", "c"] {
-        folder.grey8(&format!("tex/{name}_height.png"), 9, 9, bumps8);
-    }
-    let arguments = ["bake", "tex", "--out", "out", "--jobs", "1", "--report", "out/r.json"];
-    for signals in [["-INT", "-INT"], ["-TERM", "-INT"]] {
-        // Nobody reads what it says: it can neither go on nor end cleanly.
-        let mut run = Paused::spawn(folder.command(&arguments));
-        while !folder.path("out/a_normal.png").exists() {
-            assert!(run.child.try_wait().unwrap().is_none());
-            std::thread::yield_now();
-        }
-        let id = run.child.id().to_string();
-        for signal in signals {
-            assert!(run.child.try_wait().unwrap().is_none());
-            assert!(Command::new("kill").args([signal, &id]).status().unwrap().success());
-            while is_pending(&id) {
-                std::thread::yield_now();
-            }
-        }
-        let patience = Instant::now() + Duration::from_secs(60);
-        let status = loop {
-            if let Some(status) = run.child.try_wait().unwrap() {
-                break status;
-            }
-            if Instant::now() > patience {
-                run.child.kill().unwrap();
-                panic!("it does not end");
-            }
-            std::thread::yield_now();
-        };
-        assert_eq!(status.code(), Some(130));
-        let files = folder.files("out");
-        assert_eq!(files.len(), 2, "the report that was open is left: {files:?}");
-        folder.run(&[&arguments[..], &["--quiet"]].concat()).ends(0);
-        assert_eq!(folder.files("out"), ["a_normal.png", "b_normal.png", "c_normal.png", "r.json"]);
-        std::fs::remove_dir_all(folder.path("out")).unwrap();
-    }
-}
-
-#[test]
-fn one_interrupt_of_a_run_that_waits_lets_it_end_cleanly() {
-    let folder = Folder::new();
-    for name in ["a", "b", "c"] {
-        folder.grey8(&format!("tex/{name}_height.png"), 9, 9, bumps8);
-    }
-    let arguments = ["bake", "tex", "--out", "out", "--jobs", "1", "--report", "out/r.json"];
-    let mut run = Paused::spawn(folder.command(&arguments));
-    while !folder.path("out/a_normal.png").exists() {
-        assert!(run.child.try_wait().unwrap().is_none());
-        std::thread::yield_now();
-    }
-    let id = run.child.id().to_string();
-    assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
-    while is_pending(&id) {
-        std::thread::yield_now();
-    }
-    let run = run.go_on();
-    // The signal may be heard when the next texture is done already.
-    let run = if run.status == 0 { return } else { run.ends(130) };
-    assert!(run.stderr.contains("interrupted: "), "{}", run.stderr);
-    let totals = &folder.json("out/r.json")["totals"];
-    let [baked, left] = [totals["baked"].as_u64().unwrap(), totals["not_begun"].as_u64().unwrap()];
-    assert_eq!(folder.files("out").len() as u64, baked + 1);
-    assert!(run.stdout.contains(&format!("{baked} of 3 files baked, {left} not begun; ")), "{}", run.stdout);
-}
-
-/// Whether a signal has not reached any thread of a process yet, as Linux says.
-fn is_pending(id: &str) -> bool {
-    let Ok(status) = std::fs::read_to_string(format!("/proc/{id}/status")) else {
-        std::thread::sleep(Duration::from_millis(500));
-        return false;
-    };
-    let pending = status.lines().filter_map(|line| line.strip_prefix("SigPnd:").or(line.strip_prefix("ShdPnd:")));
-    pending.into_iter().any(|mask| mask.trim().bytes().any(|digit| digit != b'0'))
 }
 
 #[test]

@@ -10,3 +10,5 @@ mod interrupt;
 mod kill;
 #[cfg(all(feature = "cli", unix))]
 mod paused;
+#[cfg(all(feature = "cli", target_os = "linux"))]
+mod unheard;
