@@ -79,7 +79,7 @@ pub(super) fn run(
 }
 
 /// The row above, the rows and the row below of a band.
-fn layers<'a>(band: &HeightBand<'a>) -> [Layer<'a>; 3] {
+pub(super) fn layers<'a>(band: &HeightBand<'a>) -> [Layer<'a>; 3] {
     fn cut<'a, T>(band: &Band<'a, T>, codes: impl Fn(&'a [T]) -> CodesRef<'a>) -> [Layer<'a>; 3] {
         let layer = |rows, heights| Layer { rows, codes: codes(heights) };
         [layer(1, band.above), layer(band.body.len() / band.width, band.body), layer(1, band.below)]

@@ -19,6 +19,10 @@ mod operation;
 mod output;
 mod parallax;
 #[cfg(test)]
+pub(crate) mod recording;
+#[cfg(test)]
+pub(crate) mod recording_tests;
+#[cfg(test)]
 mod reflection;
 mod self_test;
 mod slot;

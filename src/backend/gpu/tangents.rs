@@ -14,7 +14,7 @@ use crate::ops::tangents::{TangentMethod, TangentPlan, tangent_of_fan};
 use bytemuck::{NoUninit, Pod, Zeroable};
 use rayon::prelude::*;
 use std::ops::Range;
-use wgpu::{BufferViewMut, CommandEncoderDescriptor, ComputePipeline};
+use wgpu::{CommandEncoderDescriptor, ComputePipeline, WriteOnly};
 
 /// `Params` of kernels/tangents.wgsl; the words mean what they say there.
 #[repr(C)]
@@ -53,7 +53,7 @@ impl Limits {
 }
 
 /// The bit that a word of proof has for a sign of -1.
-const NEGATIVE: u32 = 1 << 31;
+pub(super) const NEGATIVE: u32 = 1 << 31;
 
 /// The kernels of a plan: the one for triangles, and the one for fans.
 pub(super) fn kernels(plan: &TangentPlan<'_>) -> [Kernel; 2] {
@@ -70,7 +70,7 @@ pub(super) fn kernels(plan: &TangentPlan<'_>) -> [Kernel; 2] {
 }
 
 /// `FRAME_WORDS` of a plan's kernels.
-fn frame_words(method: TangentMethod) -> usize {
+pub(super) fn frame_words(method: TangentMethod) -> usize {
     match method {
         TangentMethod::Mikktspace => 4,
         TangentMethod::Lengyel | TangentMethod::Hegde => 7,
@@ -105,18 +105,17 @@ fn run_part(
     out: &mut [[f32; 4]],
 ) -> Result<()> {
     let triangles = parts.triangles.of.len();
-    let corners = corners_of(plan, &fans).len();
-    let frame_words = frame_words(plan.method);
-    let words = Words::new([parts.vertices.of.len(), triangles, fans.len(), corners], frame_words);
-    let tangents = frame_words * triangles;
+    let words = words(plan, parts, &fans);
+    let tangents = first_tangent(plan, parts);
     let (input_bytes, output_bytes) = (4 * words.inputs as u64, 4 * words.outputs as u64);
     let nonce = device.fresh_nonce() & !NEGATIVE;
 
     let (slot, mapping) = device.guarded(|| {
         let slot = device.slot(input_bytes, output_bytes);
-        let view = slot.upload.get_mapped_range_mut(..).map_err(|error| device.error(error))?;
+        let mut view = slot.upload.get_mapped_range_mut(..).map_err(|error| device.error(error))?;
         let longest_row = limits.row as u32;
-        let params = Params { nonce, longest_row, tangents: tangents as u32, ..write(view, plan, parts, &fans) };
+        let params = Params { nonce, longest_row, ..write(view.slice(..), plan, parts, &fans) };
+        drop(view);
         slot.upload.unmap();
         let encoder = |label| device.device.create_command_encoder(&CommandEncoderDescriptor { label: Some(label) });
 
@@ -177,12 +176,28 @@ fn corners_of<'a>(plan: &TangentPlan<'a>, fans: &Range<usize>) -> &'a [u32] {
     &adjacency.corners()[adjacency.offsets()[fans.start] as usize..adjacency.offsets()[fans.end] as usize]
 }
 
+/// Words that a part of the fans takes.
+pub(super) fn words(plan: &TangentPlan<'_>, parts: &Parts<'_>, fans: &Range<usize>) -> Words {
+    let counts = [parts.vertices.of.len(), parts.triangles.of.len(), fans.len(), corners_of(plan, fans).len()];
+    Words::new(counts, frame_words(plan.method))
+}
+
+/// The word of `outputs` where a part's tangents begin: behind its frames.
+fn first_tangent(plan: &TangentPlan<'_>, parts: &Parts<'_>) -> usize {
+    frame_words(plan.method) * parts.triangles.of.len()
+}
+
 /// Writes a part's inputs, and tells where they lie.
-fn write(view: BufferViewMut, plan: &TangentPlan<'_>, parts: &Parts<'_>, fans: &Range<usize>) -> Params {
+pub(super) fn write(
+    inputs: WriteOnly<'_, [u8]>,
+    plan: &TangentPlan<'_>,
+    parts: &Parts<'_>,
+    fans: &Range<usize>,
+) -> Params {
     let TangentPlan { surface, fans: all, .. } = *plan;
     let Parts { triangles, vertices, .. } = parts;
     let offsets = &all.corners.offsets()[fans.start..=fans.end];
-    let mut inputs = Inputs { view, words: 0 };
+    let mut inputs = Inputs { buffer: inputs, words: 0 };
     Params {
         positions: inputs.add(vertices.of.par_iter().map(|&vertex| surface.position(vertex))),
         edges: inputs.add(triangles.of.par_iter().map(|&triangle| surface.texture_edges(triangle as usize))),
@@ -194,24 +209,25 @@ fn write(view: BufferViewMut, plan: &TangentPlan<'_>, parts: &Parts<'_>, fans: &
         offsets: inputs.add(offsets.par_iter().map(|offset| offset - offsets[0])),
         corners: inputs
             .add(corners_of(plan, fans).par_iter().map(|&corner| 4 * triangles.get(corner / 3) + corner % 3)),
+        tangents: first_tangent(plan, parts) as u32,
         ..Params::default()
     }
 }
 
 /// Inputs on their way to a device, one kind after the other.
-struct Inputs {
-    view: BufferViewMut,
+struct Inputs<'a> {
+    buffer: WriteOnly<'a, [u8]>,
     words: usize,
 }
 
-impl Inputs {
+impl Inputs<'_> {
     /// Writes some more, and tells the word where they begin.
     fn add<T: NoUninit + Send>(&mut self, values: impl IndexedParallelIterator<Item = T>) -> u32 {
         let values: Vec<T> = values.collect();
         let bytes: &[u8] = bytemuck::cast_slice(&values);
         let place = self.words;
         self.words += bytes.len() / 4;
-        self.view.slice(4 * place..4 * self.words).copy_from_slice(bytes);
+        self.buffer.slice(4 * place..4 * self.words).copy_from_slice(bytes);
         place as u32
     }
 }
