@@ -5,7 +5,7 @@ use super::device::Device;
 use super::kernel::Kernel;
 use super::operation::{Operation, Places, Rows, row_bytes};
 use super::transfer::dispatch;
-use super::{GREATEST_DISPATCH, Gpu, adapters, self_test};
+use super::{GREATEST_DISPATCH, Gpu, Untested, adapters};
 use crate::error::{Error, Result};
 use crate::map::{Channels, Depth, Encoding, HeightType, NormalFormat, Size};
 use crate::ops::bake::{BakePlan, NormalOptions};
@@ -77,8 +77,7 @@ impl Hosted {
     /// [`Error::Device`] if the device computes other bytes than the CPU, or cannot run the kernels.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self> {
         let name = adapters::describe(&device.adapter_info());
-        let gpu = Gpu { device: Device::new(name, device.clone(), queue.clone()) };
-        self_test::run(&gpu.device)?;
+        let gpu = Gpu::tested(Untested { device: Device::new(name, device.clone(), queue.clone()) })?;
         Ok(Self { gpu })
     }
 
@@ -91,7 +90,7 @@ impl Hosted {
     /// [`Error::Parameter`] if an option is out of range; [`Error::Device`] if the device has no room for such a map
     /// in one binding.
     pub fn normal(&self, size: Size, height_type: HeightType, options: &NormalOptions) -> Result<NormalBake<'_>> {
-        let device = &self.gpu.device;
+        let device = &self.gpu.untested.device;
         let plan = BakePlan::new(&(*options).into(), size, height_type)?;
         let bake = NormalBake { device, plan, format: options.format };
         let rows =

@@ -48,9 +48,14 @@ use operation::{Operation, TEXELS_PER_INVOCATION, WORKGROUP, output_row_bytes};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use tangents::Limits;
 
-/// A GPU that has passed its self-test.
-pub(crate) struct Gpu {
+/// A GPU that runs whatever it is given, and may compute wrong bytes.
+pub(crate) struct Untested {
     device: Device,
+}
+
+/// A GPU that has passed its self-test, and tests each kernel before its first job.
+pub(crate) struct Gpu {
+    untested: Untested,
 }
 
 /// Codes of a band stay near this many bytes: enough to fill a GPU, little enough to stay far below a driver's
@@ -60,31 +65,13 @@ const BAND_BYTES: usize = 8 << 20;
 /// The most workgroups of one dispatch in each dimension, on every WebGPU device.
 const GREATEST_DISPATCH: usize = 65_535;
 
-impl Gpu {
-    /// Opens the adapter that `selector` means, or the best one, and tests it.
+impl Untested {
+    /// Opens the adapter that `selector` means, or the best one.
     ///
     /// # Errors
-    /// [`crate::Error::Device`] if there is none, or it does not open, or it computes wrong bytes.
+    /// [`crate::Error::Device`] if there is none, or it does not open.
     pub fn open(selector: Option<&str>) -> Result<Self> {
         Self::open_adapter(&adapters::select(selector)?)
-    }
-
-    /// Opens the first real GPU that passes its self-test; else says why there is none.
-    pub fn open_real() -> Result<Self, String> {
-        let mut reasons = Vec::new();
-        for adapter in adapters::primary() {
-            let info = adapter.get_info();
-            if !adapters::is_candidate(&info) {
-                reasons.push(format!("{} is {}", adapters::describe(&info), adapters::kind(&info)));
-                continue;
-            }
-            match Self::open_adapter(&adapter) {
-                Ok(gpu) => return Ok(gpu),
-                Err(error) => reasons.push(error.to_string()),
-            }
-        }
-        let found = if reasons.is_empty() { "none found".into() } else { reasons.join("; ") };
-        Err(format!("no real GPU: {found}"))
     }
 
     fn open_adapter(adapter: &wgpu::Adapter) -> Result<Self> {
@@ -93,9 +80,7 @@ impl Gpu {
             let name = adapters::describe(&adapter.get_info());
             Err(Error::device(name, format_args!("wgpu failed: {}", device::panic_text(panic.as_ref()))))
         });
-        let gpu = Self { device: opened? };
-        self_test::run(&gpu.device)?;
-        Ok(gpu)
+        Ok(Self { device: opened? })
     }
 
     /// Refuses rows that this device cannot take.
@@ -111,13 +96,6 @@ impl Gpu {
         Ok(())
     }
 
-    /// Refuses rows that this device cannot take, and a kernel that computes wrong bytes; each kernel is tested once.
-    fn accept_bake(&self, plan: &BakePlan) -> Result<()> {
-        self.check_width(plan)?;
-        self_test::accept_bake(&self.device, plan)
-    }
-
-    /// Runs an operation on several maps.
     fn run_layers(
         &self,
         plan: &impl LayerOperation,
@@ -125,12 +103,11 @@ impl Gpu {
         sink: &mut dyn CodeSink,
     ) -> Result<()> {
         self.check_width(plan)?;
-        layers::accept(&self.device, plan)?;
         layers::run(&self.device, plan, bands, &mut [sink])
     }
 }
 
-impl Backend for Gpu {
+impl Backend for Untested {
     fn kind(&self) -> &'static str {
         "gpu"
     }
@@ -144,7 +121,7 @@ impl Backend for Gpu {
     }
 
     fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
-        self.accept_bake(plan)?;
+        self.check_width(plan)?;
         bake::run(&self.device, plan, bands, sinks)
     }
 
@@ -157,8 +134,80 @@ impl Backend for Gpu {
     }
 
     fn tangents(&self, plan: &TangentPlan<'_>, out: &mut [[f32; 4]]) -> Result<()> {
-        tangents_self_test::accept(&self.device, plan)?;
         tangents::run(&self.device, plan, Limits::of(&self.device), out)
+    }
+}
+
+impl Gpu {
+    /// Opens the adapter that `selector` means, or the best one, and tests it.
+    ///
+    /// # Errors
+    /// [`crate::Error::Device`] if there is none, or it does not open, or it computes wrong bytes.
+    pub fn open(selector: Option<&str>) -> Result<Self> {
+        Self::tested(Untested::open(selector)?)
+    }
+
+    /// Opens the first real GPU that passes its self-test; else says why there is none.
+    pub fn open_real() -> Result<Self, String> {
+        let mut reasons = Vec::new();
+        for adapter in adapters::primary() {
+            let info = adapter.get_info();
+            if !adapters::is_candidate(&info) {
+                reasons.push(format!("{} is {}", adapters::describe(&info), adapters::kind(&info)));
+                continue;
+            }
+            match Untested::open_adapter(&adapter).and_then(Self::tested) {
+                Ok(gpu) => return Ok(gpu),
+                Err(error) => reasons.push(error.to_string()),
+            }
+        }
+        let found = if reasons.is_empty() { "none found".into() } else { reasons.join("; ") };
+        Err(format!("no real GPU: {found}"))
+    }
+
+    fn tested(untested: Untested) -> Result<Self> {
+        self_test::run(&untested.device)?;
+        Ok(Self { untested })
+    }
+
+    /// Refuses rows that this device cannot take, and a kernel that computes wrong bytes; each kernel is tested once.
+    fn accept_bake(&self, plan: &BakePlan) -> Result<()> {
+        self.untested.check_width(plan)?;
+        self_test::accept_bake(&self.untested.device, plan)
+    }
+}
+
+impl Backend for Gpu {
+    fn kind(&self) -> &'static str {
+        self.untested.kind()
+    }
+
+    fn device(&self) -> String {
+        self.untested.device()
+    }
+
+    fn band_rows(&self, row: RowBytes) -> usize {
+        self.untested.band_rows(row)
+    }
+
+    fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
+        self.accept_bake(plan)?;
+        self.untested.bake(plan, bands, sinks)
+    }
+
+    fn blend(&self, plan: &BlendPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {
+        layers::accept(&self.untested.device, plan)?;
+        self.untested.blend(plan, bands, sink)
+    }
+
+    fn parallax(&self, plan: &ParallaxPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {
+        layers::accept(&self.untested.device, plan)?;
+        self.untested.parallax(plan, bands, sink)
+    }
+
+    fn tangents(&self, plan: &TangentPlan<'_>, out: &mut [[f32; 4]]) -> Result<()> {
+        tangents_self_test::accept(&self.untested.device, plan)?;
+        self.untested.tangents(plan, out)
     }
 }
 
@@ -167,7 +216,8 @@ pub(crate) fn devices() -> Vec<crate::Device> {
     let mut picked_one = false;
     let describe = |adapter: wgpu::Adapter| {
         let info = adapter.get_info();
-        let self_test = Gpu::open_adapter(&adapter).map(drop).map_err(|error| error.to_string());
+        let self_test =
+            Untested::open_adapter(&adapter).and_then(Gpu::tested).map(drop).map_err(|error| error.to_string());
         let candidate = adapters::is_candidate(&info);
         let picked = candidate && self_test.is_ok() && !picked_one;
         picked_one |= picked;

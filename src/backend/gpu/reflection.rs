@@ -4,7 +4,7 @@ use super::input::Input;
 use super::kernel::{ALL, BAKE_FLOAT_HEIGHTS, BAKE_FLOATS, BAKE_INTEGERS, Kernel, KernelSource};
 use super::operation::{Operation, PARAMS_BYTES, WORKGROUP};
 use super::output::Output;
-use super::{Gpu, bake, blend, layer_tests, parallax, self_test, tangent_tests, tangents};
+use super::{Device, Gpu, Untested, bake, blend, layer_tests, parallax, self_test, tangent_tests, tangents};
 use crate::exact::Scale;
 use crate::map::{Depth, Encoding, HeightType, NormalFormat, ParallaxFormat, Size};
 use crate::ops::Precision;
@@ -255,9 +255,9 @@ fn a_device_that_computes_wrong_bytes_fails_its_self_test() {
     ] {
         let text = source.text();
         assert!(text.contains(from), "{}: no {from:?}", source.name);
-        let gpu = Gpu { device: super::Device::open(&adapter).unwrap() };
-        gpu.device.substitute(source, &text.replacen(from, to, 1));
-        let error = self_test::run(&gpu.device).expect_err(source.name).to_string();
+        let device = Device::open(&adapter).unwrap();
+        device.substitute(source, &text.replacen(from, to, 1));
+        let error = self_test::run(&device).expect_err(source.name).to_string();
         assert!(error.contains("fails the self-test"), "{}: {error}", source.name);
     }
 }
@@ -285,12 +285,12 @@ fn a_kernel_that_computes_wrong_bytes_is_refused_before_its_first_job() {
         let kernel = plan.kernel();
         let text = kernel.source.text();
         assert!(text.contains(from), "{}: no {from:?}", kernel.source.name);
-        let gpu = Gpu { device: super::Device::open(&adapter).unwrap() };
-        self_test::accept_bake(&gpu.device, &plan).unwrap();
-        let gpu = Gpu { device: super::Device::open(&adapter).unwrap() };
-        gpu.device.substitute(kernel.source, &text.replacen(from, to, 1));
+        self_test::accept_bake(&Device::open(&adapter).unwrap(), &plan).unwrap();
+        let device = Device::open(&adapter).unwrap();
+        device.substitute(kernel.source, &text.replacen(from, to, 1));
+        let gpu = Gpu { untested: Untested { device } };
         let error = gpu.accept_bake(&plan).expect_err(from).to_string();
         assert!(error.contains("fails the self-test: bake: wrong"), "{from}: {error}");
-        assert!(!gpu.device.is_tested(&kernel), "{from}");
+        assert!(!gpu.untested.device.is_tested(&kernel), "{from}");
     }
 }

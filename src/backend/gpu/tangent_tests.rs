@@ -4,7 +4,7 @@ use super::device::Device;
 use super::kernel::{Kernel, KernelSource};
 use super::tangents::{self, Limits};
 use super::tangents_self_test::{accept, compare, noise};
-use super::{Gpu, adapters};
+use super::{Gpu, Untested, adapters};
 use crate::backend::Backend;
 use crate::error::Result;
 use crate::mesh::{CornerAdjacency, Mesh};
@@ -183,7 +183,7 @@ fn a_kernel_that_computes_wrong_tangents_is_refused_before_its_first_job() {
         with_plan(&mesh, &normals, method, Precision::Exact, |plan| {
             let source = tangents::kernels(plan)[kernel].source;
             let Some(device) = sabotaged(source, from, to) else { return };
-            let gpu = Gpu { device };
+            let gpu = Gpu { untested: Untested { device } };
             let refused = gpu.tangents(plan, &mut vec![[0.0; 4]; plan.fans.count()]);
             match refused {
                 Ok(()) => unnoticed.push(from),
