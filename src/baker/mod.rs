@@ -100,7 +100,8 @@ impl Baker {
         Self::only(Reference)
     }
 
-    fn only(backend: impl Backend + 'static) -> Self {
+    /// This backend and nothing else.
+    pub(crate) fn only(backend: impl Backend + 'static) -> Self {
         Self { backend: Arc::new(backend), fallback: None, reason: "asked for".into() }
     }
 

@@ -3,25 +3,28 @@
 //!
 //! The bytes are those that [`super::transfer`] and [`super::tangents`] send; the answers are the reference's.
 
+use super::device::lock;
+use super::input::one_channel;
 use super::kernel::Kernel;
 use super::layers::LayerOperation;
 use super::mesh_parts::Parts;
 use super::operation::{Layer, Operation, Rows, WORKGROUP, output_row_bytes};
-use super::self_test::filled;
 use super::tangents::{self, NEGATIVE};
 use super::transfer::{placed, workgroups, write_layers};
-use super::{bake, input};
-use crate::backend::Backend;
+use super::{GREATEST_DISPATCH, bake};
 use crate::backend::cpu::Reference;
+use crate::backend::{Backend, RowBytes, fill_rows};
+use crate::baker::Baker;
 use crate::error::Result;
-use crate::map::{Codes, CodesRef, Depth, Encoding, HeightMap, NormalFormat, TexelFormat};
+use crate::map::{Codes, CodesMut, Depth, Encoding, NormalFormat, TexelFormat};
 use crate::ops::Precision;
-use crate::ops::bake::BakePlan;
-use crate::ops::blend::BlendPlan;
-use crate::ops::parallax::ParallaxPlan;
+use crate::ops::bake::{BakePlan, codes_of_band};
+use crate::ops::blend::{self, BlendPlan};
+use crate::ops::parallax::{self, ParallaxPlan};
 use crate::ops::tangents::{TangentPlan, tangents_of_fans};
-use crate::stream::{HeightBands, MapBands, MapLayers};
+use crate::stream::{CodeSink, HeightBand, HeightBands, LayerBand, LayerBands};
 use serde::{Serialize, Serializer};
+use std::sync::{Arc, Mutex};
 use wgpu::WriteOnly;
 
 /// One computation: its passes run one after the other on the same inputs and outputs.
@@ -193,70 +196,122 @@ impl Pass {
     }
 }
 
+/// A backend that computes as the reference does, and records every band.
+#[derive(Debug, Clone, Default)]
+struct Recorder(Arc<Mutex<Vec<Recording>>>);
+
+impl Recorder {
+    /// Keeps a recording of `rows` rows, and hands its codes on.
+    fn keep(&self, recording: Recording, rows: usize, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
+        fill_rows(sinks, rows, |maps| {
+            for (map, expected) in maps.iter_mut().zip(&recording.expected) {
+                map.bytes_mut().copy_from_slice(&expected.bytes);
+            }
+        })?;
+        lock(&self.0).push(recording);
+        Ok(())
+    }
+}
+
+impl Backend for Recorder {
+    fn kind(&self) -> &'static str {
+        "recorder"
+    }
+
+    fn device(&self) -> String {
+        Reference.device()
+    }
+
+    /// A map is one band.
+    fn band_rows(&self, _: RowBytes) -> usize {
+        GREATEST_DISPATCH
+    }
+
+    fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
+        while let Some(band) = bands.next()? {
+            self.keep(Recording::of_bake(plan, &band), band.rows(), sinks)?;
+        }
+        Ok(())
+    }
+
+    fn blend(&self, plan: &BlendPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {
+        while let Some(band) = bands.next()? {
+            self.keep(Recording::of_blend(plan, &band), band.rows, &mut [&mut *sink])?;
+        }
+        Ok(())
+    }
+
+    fn parallax(&self, plan: &ParallaxPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {
+        while let Some(band) = bands.next()? {
+            self.keep(Recording::of_parallax(plan, &band), band.rows, &mut [&mut *sink])?;
+        }
+        Ok(())
+    }
+
+    fn tangents(&self, plan: &TangentPlan<'_>, out: &mut [[f32; 4]]) -> Result<()> {
+        tangents_of_fans(plan, out);
+        lock(&self.0).push(Recording::of_tangents(plan, out));
+        Ok(())
+    }
+}
+
 impl Recording {
-    /// A bake of a whole height map of the plan's size.
+    /// What `job` asks of a baker: a recording for each dispatch.
     ///
     /// # Errors
-    /// None that a map in memory can cause.
-    pub fn of_bake(plan: &BakePlan, heights: &HeightMap) -> Result<Self> {
-        let (width, height) = (plan.size.width(), plan.size.height());
-        let bands = || MapBands::new(heights, plan.edges.y, height);
-        let answer = filled(plan, plan.size, 0x5a, |sinks| Reference.bake(plan, &mut bands(), sinks))?;
+    /// The job's.
+    pub fn of<T>(job: impl FnOnce(&Baker) -> Result<T>) -> Result<Vec<Self>> {
+        let recorder = Recorder::default();
+        job(&Baker::only(recorder.clone()))?;
+        Ok(std::mem::take(&mut *lock(&recorder.0)))
+    }
+
+    /// The bake of a band.
+    fn of_bake(plan: &BakePlan, band: &HeightBand<'_>) -> Self {
+        let answer = answer(plan, band.rows(), |maps| codes_of_band(plan, band, maps));
         let names = [plan.normal.map(|_| "normal"), plan.parallax.map(|_| "parallax")];
         let names: Vec<_> = names.into_iter().flatten().collect();
         let stored = plan.normal.map(words).into_iter().chain(plan.parallax.map(|format| texel_words(format.texel())));
         let formats = format!("{} heights to {}", plan.height_type, stored.collect::<Vec<_>>().join(" and "));
-
-        let mut bands = bands();
-        let layers = bands.next()?.map(|band| bake::layers(&band).to_vec()).unwrap_or_default();
-        let (places, this) = Self::of_maps(plan, plan.precision, formats, &layers, &names, answer);
+        let (places, this) = Self::of_maps(plan, plan.precision, formats, &bake::layers(band), &names, answer);
         // The row above, the rows and the row below lie one after the other.
-        let code = CodeType::sent(input::one_channel(plan.height_type));
-        let rows = RowsOf::texels(places[0], height + 2, width, code, 1);
-        Ok(Self { given: vec![Given { name: "heights", rows, first_row: -1, reach: 1 }], ..this })
+        let code = CodeType::sent(one_channel(plan.height_type));
+        let rows = RowsOf::texels(places[0], band.rows() + 2, plan.width(), code, 1);
+        Self { given: vec![Given { name: "heights", rows, first_row: -1, reach: 1 }], ..this }
     }
 
-    /// A blend of two whole normal maps and, of a masked one, a mask.
-    ///
-    /// # Errors
-    /// None that maps in memory can cause.
-    pub fn of_blend(plan: &BlendPlan, maps: &[CodesRef<'_>]) -> Result<Self> {
+    /// The blend of a band.
+    fn of_blend(plan: &BlendPlan, band: &LayerBand<'_>) -> Self {
+        let answer = answer(plan, band.rows, |maps| blend::codes_of_layers(plan, &band.layers, &mut maps[0]));
         let [base, detail] = plan.inputs.map(words);
         let mask = plan.mask.map_or(String::new(), |mask| format!(" by a {} mask", mask.height_type));
         let formats = format!("{base} and {detail}{mask} to {}", words(plan.format));
-        Self::of_layers(plan, formats, maps, ["base", "detail", "mask"], "normal")
+        Self::of_layers(plan, formats, band, &["base", "detail", "mask"], ("normal", answer))
     }
 
-    /// A parallax map of a whole height map and its normal map.
-    ///
-    /// # Errors
-    /// None that maps in memory can cause.
-    pub fn of_parallax(plan: &ParallaxPlan, maps: &[CodesRef<'_>]) -> Result<Self> {
+    /// The parallax map of a band.
+    fn of_parallax(plan: &ParallaxPlan, band: &LayerBand<'_>) -> Self {
+        let answer = answer(plan, band.rows, |maps| parallax::codes_of_layers(plan, &band.layers, &mut maps[0]));
         let stored = texel_words(plan.format.texel());
         let formats = format!("{} heights and {} to {stored}", plan.height_type, words(plan.input));
-        Self::of_layers(plan, formats, maps, ["heights", "normals", ""], "parallax")
+        Self::of_layers(plan, formats, band, &["heights", "normals"], ("parallax", answer))
     }
 
     fn of_layers(
         plan: &impl LayerOperation,
         formats: String,
-        maps: &[CodesRef<'_>],
-        names: [&'static str; 3],
-        result: &'static str,
-    ) -> Result<Self> {
-        let stored = plan.layers();
-        let height = maps[0].len() / stored[0].row_codes(plan.width());
-        let size = crate::map::Size::new(plan.width(), height)?;
-        let layers: Vec<_> = maps.iter().map(|&codes| Layer { rows: height, codes }).collect();
-        let bands = || MapLayers::new(maps.to_vec(), height, height);
-        let answer = filled(plan, size, 0x5a, |sinks| plan.reference(&mut bands(), sinks[0]))?;
+        band: &LayerBand<'_>,
+        names: &[&'static str],
+        (result, answer): (&'static str, Vec<Codes>),
+    ) -> Self {
+        let layers: Vec<_> = band.layers.iter().map(|&codes| Layer { rows: band.rows, codes }).collect();
         let (places, this) = Self::of_maps(plan, plan.precision(), formats, &layers, &[result], answer);
-        let maps = places.into_iter().zip(stored).zip(names);
+        let maps = places.into_iter().zip(plan.layers()).zip(names);
         let given = maps.map(|((at, format), name)| {
-            let rows = RowsOf::texels(at, height, plan.width(), CodeType::sent(format), format.channels);
+            let rows = RowsOf::texels(at, band.rows, plan.width(), CodeType::sent(format), format.channels);
             Given { name, rows, first_row: 0, reach: 0 }
         });
-        Ok(Self { given: given.collect(), ..this })
+        Self { given: given.collect(), ..this }
     }
 
     /// An operation on maps, a dispatch for all rows; and where each layer lies.
@@ -302,7 +357,7 @@ impl Recording {
     }
 
     /// The tangents of a mesh's fans: a pass over its triangles, then one over its fans.
-    pub fn of_tangents(plan: &TangentPlan<'_>) -> Self {
+    fn of_tangents(plan: &TangentPlan<'_>, answer: &[[f32; 4]]) -> Self {
         let mut parts = Parts::new(plan, tangents::frame_words(plan.method), usize::MAX);
         let fans = parts.next().unwrap_or(0..0);
         let words = tangents::words(plan, &parts, &fans);
@@ -315,8 +370,6 @@ impl Recording {
             Pass::new(kernel, bytemuck::bytes_of(&params).to_vec(), [count.div_ceil(WORKGROUP) as u32, 1])
         });
 
-        let mut answer = vec![[0.0; 4]; fans.len()];
-        tangents_of_fans(plan, &mut answer);
         let place = params.tangents as usize;
         let rows = RowsOf::words(place, 4, fans.len(), 3, CodeType::F32);
         let bytes = answer.iter().flat_map(|[x, y, z, _]| [x, y, z]).flat_map(|part| part.to_le_bytes()).collect();
@@ -341,6 +394,15 @@ impl Recording {
             expected: vec![directions, signs],
         }
     }
+}
+
+/// The specification's codes of `rows` rows, for each map.
+fn answer(operation: &impl Operation, rows: usize, compute: impl FnOnce(&mut [CodesMut<'_>])) -> Vec<Codes> {
+    let count = |format: &TexelFormat| rows * format.row_codes(operation.width());
+    let mut maps: Vec<_> =
+        operation.outputs().iter().map(|format| Codes::zeroed(format.depth, count(format))).collect();
+    compute(&mut maps.iter_mut().map(Codes::as_mut).collect::<Vec<_>>());
+    maps
 }
 
 /// `unorm 16 xyz gl`.

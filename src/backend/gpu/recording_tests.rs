@@ -3,20 +3,20 @@
 use super::device::Device;
 use super::operation::PARAMS_BYTES;
 use super::recording::{CodeType, Expected, Recording, Tolerance};
-use super::tangent_tests::devices;
+use super::tangent_tests::{devices, torus};
 use super::{layers, self_test, tangents_self_test};
+use crate::baker::Baker;
+use crate::error::Result;
 use crate::exact::{Rational, Scale};
 use crate::map::{
-    Channels, Codes, Convention, Depth, Edge, Edges, Encoding, HeightType, NormalFormat, ParallaxFormat, Size,
+    Channels, Convention, Depth, Edge, Edges, Encoding, Grid, HeightMap, HeightType, NormalFormat, NormalMap,
+    ParallaxFormat, Size,
 };
-use crate::mesh::CornerAdjacency;
 use crate::ops::Precision;
-use crate::ops::bake::{BakeOptions, BakePlan, Filter};
-use crate::ops::blend::{BlendMethod, BlendOptions, BlendPlan};
-use crate::ops::parallax::ParallaxPlan;
-use crate::ops::tangents::{Fans, Surface, TangentMethod, TangentPlan};
+use crate::ops::bake::{BakeOptions, Filter};
+use crate::ops::blend::{BlendInputs, BlendMethod, BlendOptions};
+use crate::ops::tangents::{TangentMethod, TangentOptions};
 use half::f16;
-use std::borrow::Cow;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{BufferUsages, ComputePipelineDescriptor, MapMode, PipelineCompilationOptions, PollType};
 
@@ -27,13 +27,16 @@ fn normal(encoding: Encoding, depth: Depth, channels: Channels, convention: Conv
     NormalFormat { encoding, depth, channels, convention }
 }
 
-/// Some of every kernel, in both precisions.
+/// Some of every kernel, in both precisions, with names.
 pub(crate) fn samples() -> Vec<(String, Recording)> {
-    let mut samples = bakes();
-    samples.extend(blends());
-    samples.extend(parallaxes());
-    samples.extend(meshes());
-    samples
+    [bakes(), blends(), parallaxes(), tangents()].concat()
+}
+
+/// The one recording of a job.
+fn one<T>(job: impl FnOnce(&Baker) -> Result<T>) -> Recording {
+    let recordings = Recording::of(job).unwrap();
+    let [recording] = <[Recording; 1]>::try_from(recordings).unwrap();
+    recording
 }
 
 fn bakes() -> Vec<(String, Recording)> {
@@ -60,8 +63,7 @@ fn bakes() -> Vec<(String, Recording)> {
             let map = self_test::noise(heights).unwrap();
             let edges = Edges::both(edge);
             let options = BakeOptions { scale: steep, filter, edges, normal, parallax, precision };
-            let plan = BakePlan::new(&options, map.size(), heights).unwrap();
-            let recording = Recording::of_bake(&plan, &map).unwrap();
+            let recording = one(|baker| baker.bake(&map, &options));
             let name = format!("bake, {precision}, {}, {filter}, {edge}", recording.formats);
             recordings.push((name, recording));
         }
@@ -73,67 +75,66 @@ fn blends() -> Vec<(String, Recording)> {
     use {Channels::*, Convention::*, Depth::*, Encoding::*};
     let (unorm8, snorm16) = (normal(Unorm, Bits8, Xyz, Gl), normal(Snorm, Bits16, Xy, Dx));
     let (half, float) = (normal(Float, Float16, Xyz, Gl), normal(Float, Float32, Xy, Gl));
-    let size = Size::new(37, 5).unwrap();
+    // Where z is near zero, a code of native floats is near nothing: they blend what is easy.
     let cases = [
-        ("add", BlendMethod::add(), [unorm8, unorm8, unorm8], None),
-        ("masked", BlendMethod::Masked, [unorm8, snorm16, snorm16], Some(HeightType::U8)),
-        ("rnm", BlendMethod::Rnm, [snorm16, unorm8, half], None),
-        ("whiteout", BlendMethod::Whiteout, [half, float, float], None),
+        ("add", BlendMethod::add(), [unorm8; 3], Precision::Exact),
+        ("add", BlendMethod::add(), [unorm8; 3], Precision::Fast),
+        ("masked", BlendMethod::Masked, [unorm8, snorm16, snorm16], Precision::Exact),
+        ("rnm", BlendMethod::Rnm, [snorm16, unorm8, half], Precision::Exact),
+        ("whiteout", BlendMethod::Whiteout, [half, float, float], Precision::Exact),
     ];
-    let mut recordings = Vec::new();
-    for (method_name, method, [base, detail, format], mask) in cases {
-        for precision in [Precision::Exact, Precision::Fast] {
-            let options = BlendOptions { method, format, precision, ..Default::default() };
-            let plan = BlendPlan::new(&options, size, [base, detail], mask).unwrap();
-            // Where z is near zero, a code of native floats is near nothing.
-            if precision == Precision::Fast && method != BlendMethod::add() {
-                continue;
-            }
-            let maps = noise_of(&layers::LayerOperation::layers(&plan), size);
-            let maps: Vec<_> = maps.iter().map(Codes::as_ref).collect();
-            let recording = Recording::of_blend(&plan, &maps).unwrap();
-            recordings.push((format!("blend, {precision}, {}, {method_name}", recording.formats), recording));
-        }
-    }
-    recordings
+    let record = |(name, method, formats, precision): (_, _, [NormalFormat; 3], _)| {
+        let [base, detail, format] = formats;
+        let mask = Grid::from_fn(WIDTH, HEIGHT, |x, y| self_test::scrambled((y * WIDTH + x) as u32) as u8).unwrap();
+        let mask = (method == BlendMethod::Masked).then(|| HeightMap::from(mask));
+        let (base, detail) = (normals(base, 1), normals(detail, 2));
+        let options = BlendOptions { method, format, precision, ..Default::default() };
+        let inputs = BlendInputs { base: &base, detail: &detail, mask: mask.as_ref() };
+        let recording = one(|baker| baker.blend(&inputs, &options));
+        (format!("blend, {precision}, {}, {name}", recording.formats), recording)
+    };
+    cases.map(record).into()
+}
+
+/// The size of blended maps.
+const WIDTH: usize = 37;
+const HEIGHT: usize = 5;
+
+fn normals(format: NormalFormat, seed: u32) -> NormalMap {
+    let size = Size::new(WIDTH, HEIGHT).unwrap();
+    NormalMap::new(size, format, layers::noise(format.texel(), size, seed)).unwrap()
 }
 
 fn parallaxes() -> Vec<(String, Recording)> {
     use {Channels::*, Convention::*, Depth::*, Encoding::*};
-    let size = Size::new(35, 4).unwrap();
     let cases = [
-        (HeightType::U8, normal(Unorm, Bits8, Xyz, Gl), Encoding::Snorm, Depth::Bits8, Precision::Exact),
-        (HeightType::U16, normal(Snorm, Bits16, Xy, Dx), Encoding::Unorm, Depth::Bits16, Precision::Exact),
-        (HeightType::F32, normal(Float, Float16, Xyz, Gl), Encoding::Float, Depth::Float32, Precision::Exact),
-        (HeightType::U8, normal(Unorm, Bits8, Xyz, Gl), Encoding::Biased, Depth::Bits8, Precision::Fast),
+        (HeightType::U8, normal(Unorm, Bits8, Xyz, Gl), Snorm, Bits8, Precision::Exact),
+        (HeightType::U16, normal(Snorm, Bits16, Xy, Dx), Unorm, Bits16, Precision::Exact),
+        (HeightType::F32, normal(Float, Float16, Xyz, Gl), Float, Float32, Precision::Exact),
+        (HeightType::U8, normal(Unorm, Bits8, Xyz, Gl), Biased, Bits8, Precision::Fast),
     ];
-    let record = |(heights, normals, encoding, depth, precision)| {
-        let plan = ParallaxPlan::new(size, heights, normals, ParallaxFormat { encoding, depth }, precision).unwrap();
-        let maps = noise_of(&layers::LayerOperation::layers(&plan), size);
-        let maps: Vec<_> = maps.iter().map(Codes::as_ref).collect();
-        let recording = Recording::of_parallax(&plan, &maps).unwrap();
+    let record = |(heights, format, encoding, depth, precision)| {
+        let heights = self_test::noise(heights).unwrap();
+        let size = heights.size();
+        let normals = NormalMap::new(size, format, layers::noise(format.texel(), size, 3)).unwrap();
+        let format = ParallaxFormat { encoding, depth };
+        let recording = one(|baker| baker.parallax_with_normals(&heights, &normals, format, precision));
         (format!("parallax, {precision}, {}", recording.formats), recording)
     };
     cases.map(record).into()
 }
 
-fn noise_of(formats: &[crate::map::TexelFormat], size: Size) -> Vec<Codes> {
-    formats.iter().zip(1..).map(|(format, seed)| layers::noise(*format, size, seed)).collect()
-}
-
-fn meshes() -> Vec<(String, Recording)> {
+fn tangents() -> Vec<(String, Recording)> {
     use TangentMethod::{Hegde, Lengyel, Mikktspace};
-    let (rough, any_normals) = tangents_self_test::noise(90, 1).unwrap();
-    let (torus, normals) = super::tangent_tests::torus(12, 9);
+    let with_normals = |(mesh, normals): (crate::Mesh, _)| mesh.with_normals(normals).unwrap();
+    let rough = with_normals(tangents_self_test::noise(90, 1).unwrap());
+    let smooth = with_normals(torus(12, 9));
     let mut recordings = Vec::new();
     for method in [Lengyel, Hegde, Mikktspace] {
-        for (precision, mesh, normals) in
-            [(Precision::Exact, &rough, &any_normals), (Precision::Fast, &torus, &normals)]
-        {
-            let surface = Surface::new(mesh, normals, true);
-            let fans = Fans { corners: Cow::Owned(CornerAdjacency::of(mesh)), owners: None };
-            let recording = Recording::of_tangents(&TangentPlan { method, precision, surface: &surface, fans: &fans });
-            recordings.push((format!("tangents, {precision}, {method}"), recording));
+        for (precision, mesh) in [(Precision::Exact, &rough), (Precision::Fast, &smooth)] {
+            let options = TangentOptions { method, precision, ..Default::default() };
+            let recording = one(|baker| baker.tangents(mesh, &options));
+            recordings.push((format!("tangents, {precision}, {}", recording.formats), recording));
         }
     }
     recordings

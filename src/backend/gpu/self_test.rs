@@ -71,7 +71,7 @@ pub(super) fn test(
 }
 
 /// The codes of an operation's maps; `poison` is what stands there before.
-pub(super) fn filled(
+fn filled(
     operation: &impl Operation,
     size: Size,
     poison: u8,

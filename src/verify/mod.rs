@@ -1,0 +1,4 @@
+//! CPU and GPU held against each other.
+
+#[cfg(all(test, feature = "gpu"))]
+mod page;
