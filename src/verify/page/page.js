@@ -17,7 +17,7 @@ const SHOWN_PROBLEMS = 30;
 // The tab stays usable if no turn of ours is longer.
 const TURN_MILLISECONDS = 40;
 
-addEventListener("load", verify);
+addEventListener("load", () => verify().catch(showBroken));
 
 async function verify() {
     const { notes, kernels, cases } = JSON.parse(element("recordings").textContent);
@@ -390,8 +390,8 @@ function tellAutomation(report) {
     const names = (result) => results.filter((one) => one.result === result).map(({ name }) => name);
     const slowest = compiled.toSorted((a, b) => b.milliseconds - a.milliseconds).slice(0, 5);
     const reasons = [...new Set(results.map(({ message }) => message).filter(Boolean))].slice(0, 5);
-    const short = { ...counts, slowest, reasons, differing: names("differs"), failing: names("failed") };
-    console.log(`texbake verify report: ${JSON.stringify(short)}`);
+    const brief = { ...counts, slowest, reasons, differing: names("differs"), failing: names("failed") };
+    console.log(`texbake verify report: ${JSON.stringify(brief)}`);
 }
 
 function wordsForAdapter({ vendor, architecture, device, description }) {
@@ -495,7 +495,7 @@ function tolerancesOf({ expected }) {
             if ("codes" in tolerance) {
                 return CODES[code].isFloat ? `${tolerance.codes} ULP` : counted(tolerance.codes, "code");
             }
-            return tolerance.difference.toExponential(1);
+                return short(tolerance.difference);
         });
     return words.length > 0 ? `within ${[...new Set(words)].join(" and ")}` : "";
 }
@@ -507,7 +507,7 @@ function wordsForLargest({ codes, ulps, difference }, values) {
     }
     if (ulps > 0) {
         const many = ulps < 1e6 ? ulps.toLocaleString("en") : ulps.toExponential(1);
-        words.push(`${difference.toExponential(1)}, ${many} ULP`);
+        words.push(`${short(difference)} (${many} ULP)`);
     }
     return words.join("; ") || (values > 0 ? "none" : "");
 }
@@ -522,10 +522,19 @@ function showDevice(notes, gpu) {
             ["device", [device, description].filter(Boolean).join(", ") || "not told by the browser"],
             ["kind", isFallbackAdapter ? "software" : "as the browser chose"],
         );
-        const limits = Object.entries(limitsOf(gpu.device));
-        facts.push(["limits", limits.map(([name, value]) => `${name} ${value.toLocaleString("en")}`).join("; ")]);
+        facts.push(["limits", wordsForLimits(gpu.device.limits)]);
     }
     element("device").replaceChildren(...listed(facts));
+}
+
+function wordsForLimits(limits) {
+    const mebibytes = (bytes) => `${Math.floor(bytes / 2 ** 20).toLocaleString("en")} MiB`;
+    return [
+        `${mebibytes(limits.maxStorageBufferBindingSize)} in a binding`,
+        `${mebibytes(limits.maxBufferSize)} in a buffer`,
+        `${limits.maxComputeWorkgroupsPerDimension.toLocaleString("en")} workgroups in each dimension`,
+        `${limits.maxComputeInvocationsPerWorkgroup.toLocaleString("en")} invocations in a workgroup`,
+    ].join(", ");
 }
 
 function showKernels(kernels) {
@@ -566,6 +575,15 @@ function showVerdict(report, unusable) {
     document.title = `${headline} · texbake verify`;
 }
 
+// What this page itself did wrong: never a success, and never silence.
+function showBroken(error) {
+    element("headline").textContent = "The page itself failed";
+    element("summary").textContent = error.stack ?? messageOf(error);
+    element("verdict").dataset.state = "bad";
+    document.title = "The page itself failed · texbake verify";
+    console.log(`texbake verify: 0 cases agree, 0 differ, the page failed: ${messageOf(error)}`);
+}
+
 function showProblems(results, unusable) {
     const differing = results.filter(({ result }) => result === "differs");
     const failing = results.filter(({ result }) => result === "failed");
@@ -574,12 +592,13 @@ function showProblems(results, unusable) {
     }
     const messages = Map.groupBy(failing, ({ message }) => message);
     const cards = [...messages].map(([message, cases]) => failureCard(message, cases));
-    cards.push(...differing.slice(0, SHOWN_PROBLEMS).map(differenceCard));
+    cards.push(...differing.slice(0, SHOWN_PROBLEMS).map((result, place) => differenceCard(result, place < 3)));
     if (differing.length > SHOWN_PROBLEMS) {
         const more = differing.length - SHOWN_PROBLEMS;
         cards.push(make("p", {}, `${counted(more, "more case")} that differ: the report has all of them.`));
     }
-    element("problems-title").textContent = differing.length > 0 ? "What differs" : "What failed";
+    element("problems-title").textContent =
+        differing.length === 0 ? "What failed" : failing.length === 0 ? "What differs" : "What failed and what differs";
     element("problems-list").replaceChildren(...cards);
     element("problems").hidden = false;
 }
@@ -587,24 +606,31 @@ function showProblems(results, unusable) {
 function failureCard(message, cases) {
     const names = make("ul", {}, ...cases.map(({ name }) => make("li", {}, name)));
     const affected = make("details", {}, make("summary", {}, counted(cases.length, "case")), names);
-    return make("article", { className: "problem" }, make("h3", {}, message), affected);
+    return make("div", { className: "problem" }, make("h3", {}, message), affected);
 }
 
-function differenceCard({ name, values, differences, largest, first }) {
-    const place = first.map === "tangents" || first.map === "signs"
-        ? `${first.map}, fan ${first.row}`
-        : first.map === "marks"
-          ? `the mark of row ${first.row}`
-          : `${first.map}, column ${first.column}, row ${first.row}`;
+function differenceCard({ name, values, differences, largest, first }, open) {
     const facts = [
         ["differing values", `${differences.toLocaleString("en")} of ${values.toLocaleString("en")}`],
         ["largest difference", wordsForLargest(largest, values)],
-        ["first difference", [place, first.channel].filter(Boolean).join(", ")],
+        ["first difference", [wordsForPlace(first), first.channel].filter(Boolean).join(", ")],
         ["got", make("code", {}, first.got)],
         ["expected", make("code", {}, first.expected)],
         ...first.from.map(({ name, texels }) => [name, texelsAround(texels)]),
     ];
-    return make("article", { className: "problem" }, make("h3", {}, name), make("dl", {}, ...listed(facts)));
+    return make("details", { className: "problem", open }, make("summary", {}, name), make("dl", {}, ...listed(facts)));
+}
+
+function wordsForPlace({ map, column, row }) {
+    switch (map) {
+        case "tangents":
+        case "signs":
+            return `${map}, fan ${row}`;
+        case "marks":
+            return `the mark of row ${row}`;
+        default:
+            return `${map}, column ${column}, row ${row}`;
+    }
 }
 
 function texelsAround(texels) {
@@ -655,6 +681,11 @@ function listed(facts) {
 
 function counted(count, noun) {
     return `${count.toLocaleString("en")} ${noun}${count === 1 ? "" : "s"}`;
+}
+
+// Two digits of any magnitude.
+function short(number) {
+    return number >= 0.01 && number < 1000 ? String(Number(number.toPrecision(2))) : number.toExponential(1);
 }
 
 function bytesOf(base64) {
