@@ -20,6 +20,9 @@ mod output;
 mod own_kernel;
 mod pace;
 mod parallax;
+pub(crate) mod recording;
+#[cfg(test)]
+pub(crate) mod recording_tests;
 #[cfg(test)]
 mod reflection;
 mod self_test;
