@@ -3,6 +3,8 @@
 mod blend;
 #[cfg(feature = "cli")]
 mod cli;
+#[cfg(feature = "cli")]
+mod faults;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod inspect;
