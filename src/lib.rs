@@ -171,6 +171,7 @@ mod mesh;
 mod names;
 mod ops;
 pub mod stream;
+pub mod verify;
 
 pub use baker::{Baked, Baker, Blended, Ran};
 pub use devices::{Device, devices};

@@ -3,7 +3,6 @@
 mod blend;
 #[cfg(feature = "cli")]
 mod cli;
-#[cfg(feature = "cli")]
 mod faults;
 #[cfg(feature = "gpu")]
 mod gpu;
@@ -17,3 +16,4 @@ mod sabotage;
 mod stream;
 mod support;
 mod tangents;
+mod verify;

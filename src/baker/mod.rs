@@ -114,7 +114,12 @@ impl Baker {
     }
 
     fn only(backend: impl Backend + 'static) -> Self {
-        Self { backend: Arc::new(backend), fallback: None, reason: "asked for".into() }
+        Self::on(Arc::new(backend))
+    }
+
+    /// This backend and nothing else.
+    pub(crate) fn on(backend: Arc<dyn Backend>) -> Self {
+        Self { backend, fallback: None, reason: "asked for".into() }
     }
 
     /// What runs: the backend and its device.

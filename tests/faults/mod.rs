@@ -1,4 +1,10 @@
-//! Faults of the program's surroundings: each ends with correct files or a clear error.
+//! What goes wrong around a bake, really caused: no half file, no hang, no panic.
 
-#[cfg(feature = "gpu")]
+#[cfg(all(feature = "cli", feature = "gpu"))]
 mod gpu;
+#[cfg(all(feature = "cli", unix))]
+mod interrupt;
+#[cfg(all(feature = "cli", unix))]
+mod kill;
+#[cfg(all(feature = "cli", unix))]
+mod paused;

@@ -258,7 +258,6 @@ impl Device {
     }
 
     /// Runs another text in place of a kernel's own.
-    #[cfg(test)]
     pub fn substitute(&self, source: KernelSource, text: &str) {
         let source_text = ShaderSource::Wgsl(text.into());
         let module =

@@ -17,6 +17,7 @@ mod layers;
 mod mesh_parts;
 mod operation;
 mod output;
+mod own_kernel;
 mod pace;
 mod parallax;
 #[cfg(test)]
@@ -42,6 +43,8 @@ use device::Device;
 pub use hosted::{CodeTarget, HeightSource, Hosted, NormalBake};
 use layers::LayerOperation;
 use operation::{Operation, greatest_row_bytes, row_groups};
+pub use own_kernel::Binding;
+pub(crate) use own_kernel::OwnPipeline;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use tangents::Limits;
 
@@ -66,6 +69,24 @@ impl Untested {
     /// [`crate::Error::Device`] if there is none, or it does not open.
     pub fn open(selector: Option<&str>) -> Result<Self> {
         Self::open_adapter(&adapters::select(selector)?)
+    }
+
+    /// Every adapter of this machine, the best first, or why it does not open.
+    pub fn all() -> Vec<Result<Self>> {
+        adapters::all().iter().map(Self::open_adapter).collect()
+    }
+
+    /// Compiles a kernel of somebody else's.
+    ///
+    /// # Errors
+    /// [`crate::Error::Device`] with what the compiler says.
+    pub fn compile(&self, wgsl: &str, entry_point: &str, constants: &[(&str, f64)]) -> Result<OwnPipeline<'_>> {
+        OwnPipeline::new(&self.device, wgsl, entry_point, constants)
+    }
+
+    /// Runs other texts in place of the kernels' own.
+    pub fn replace_kernels(&self, text: impl Fn(&str) -> String) {
+        sources().iter().for_each(|source| self.device.substitute(*source, &text(&source.text())));
     }
 
     fn open_adapter(adapter: &wgpu::Adapter) -> Result<Self> {
@@ -208,6 +229,11 @@ impl Backend for Gpu {
         tangents_self_test::accept(&self.untested.device, plan)?;
         self.untested.tangents(plan, out)
     }
+}
+
+/// Every kernel's text.
+pub(crate) fn sources() -> &'static [kernel::KernelSource] {
+    &kernel::ALL
 }
 
 /// All adapters, each opened and tested, in the order in which `auto` would choose.

@@ -28,6 +28,7 @@ struct InFlight {
 pub(super) struct Mapping {
     submission: Submission,
     mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
+    buffers: usize,
 }
 
 /// One job on a device.
@@ -189,17 +190,28 @@ impl<'a, O: Operation> Transfer<'a, O> {
 impl Mapping {
     /// Asks for a slot's buffers as soon as a submission is done.
     pub fn of(slot: &Slot, submission: Submission) -> Self {
+        Self::of_buffers([(&slot.upload, MapMode::Write), (&slot.download, MapMode::Read)], submission)
+    }
+
+    /// Asks for some buffers as soon as a submission is done.
+    pub fn of_buffers<'a>(
+        wanted: impl IntoIterator<Item = (&'a wgpu::Buffer, MapMode)>,
+        submission: Submission,
+    ) -> Self {
         let (report, mapped) = channel();
-        let also = report.clone();
-        slot.upload.map_async(MapMode::Write, .., move |result| drop(report.send(result)));
-        slot.download.map_async(MapMode::Read, .., move |result| drop(also.send(result)));
-        Self { submission, mapped }
+        let mut buffers = 0;
+        for (buffer, mode) in wanted {
+            let report = report.clone();
+            buffer.map_async(mode, .., move |result| drop(report.send(result)));
+            buffers += 1;
+        }
+        Self { submission, mapped, buffers }
     }
 
     /// Waits until the submission is done and the buffers are mapped.
     pub fn wait(&self, device: &Device) -> Result<()> {
         device.wait(&self.submission)?;
-        for _ in 0..2 {
+        for _ in 0..self.buffers {
             let answer = self.mapped.recv_timeout(device.patience);
             let result = answer.map_err(|_| device.give_up("its buffers were not mapped"))?;
             result.map_err(|error| device.check().err().unwrap_or_else(|| device.error(error)))?;
