@@ -29,6 +29,7 @@ mod tangent_tests;
 mod tangents;
 mod tangents_self_test;
 mod transfer;
+mod variants;
 
 use crate::backend::{Backend, RowBytes};
 use crate::error::{Error, Result};
@@ -43,6 +44,7 @@ use layers::LayerOperation;
 use operation::{Operation, TEXELS_PER_INVOCATION, WORKGROUP, output_row_bytes};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use tangents::Limits;
+pub use variants::{KernelVariant, kernels};
 
 /// A GPU that runs whatever it is given, and may compute wrong bytes.
 pub(crate) struct Untested {
