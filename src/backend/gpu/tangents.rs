@@ -60,8 +60,13 @@ pub(super) const NEGATIVE: u32 = 1 << 31;
 
 /// The kernels of a plan: the one for triangles, and the one for fans.
 pub(super) fn kernels(plan: &TangentPlan<'_>) -> [Kernel; 2] {
+    kernels_of(plan.method, plan.precision)
+}
+
+/// The kernels of a method.
+pub(super) fn kernels_of(method: TangentMethod, precision: Precision) -> [Kernel; 2] {
     use TangentMethod::{Hegde, Lengyel, Mikktspace};
-    let sources = match (plan.method, plan.precision) {
+    let sources = match (method, precision) {
         (Lengyel, Precision::Exact) => [FRAMES_LENGYEL, TANGENTS_SUMMED],
         (Lengyel, Precision::Fast) => [FRAMES_LENGYEL_FAST, TANGENTS_SUMMED_FAST],
         (Hegde, Precision::Exact) => [FRAMES_HEGDE, TANGENTS_SUMMED],
