@@ -4,6 +4,8 @@
 mod disk;
 #[cfg(all(feature = "cli", unix))]
 mod files;
+#[cfg(all(feature = "cli", feature = "gpu"))]
+mod gpu;
 #[cfg(all(feature = "cli", unix))]
 mod interrupt;
 #[cfg(all(feature = "cli", unix))]
