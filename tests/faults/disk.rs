@@ -4,6 +4,7 @@
 
 use crate::cli::support::{Folder, Run, bumps8, bumps16};
 use crate::cli::tangents::{Model, sheet};
+use crate::support::Random;
 use std::os::unix::fs::FileTypeExt;
 use std::process::Command;
 use std::sync::OnceLock;
@@ -48,10 +49,9 @@ fn run_on_disk(folder: &Folder, options: &str, arguments: &[&str]) -> Option<Run
 
 /// A map of noise: its baked maps are as long as they can be.
 fn noise(folder: &Folder, name: &str, side: usize) -> HeightMap {
-    folder.grey16(name, side, side, |x, y| {
-        let hash = (x * 7919 + y * 104_729) as u64;
-        (hash.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 48) as u16
-    })
+    let mut random = Random::new(1);
+    let codes: Vec<u16> = (0..side * side).map(|_| random.bits() as u16).collect();
+    folder.grey16(name, side, side, |x, y| codes[y * side + x])
 }
 
 #[test]
