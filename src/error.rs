@@ -147,6 +147,8 @@ fn remedy(error: &std::io::Error) -> &'static str {
         ErrorKind::NotADirectory | ErrorKind::AlreadyExists => "; a part of its path is a file, choose another folder",
         ErrorKind::IsADirectory => "; it is a folder: name a file, or bake the folder with texbake bake",
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "; make room, or choose another disk",
+        ErrorKind::FileTooLarge => "; choose another disk, or raise the limit on the size of files (ulimit -f)",
+        ErrorKind::InvalidFilename => "; choose a shorter or plainer name",
         _ => "",
     }
 }

@@ -2,7 +2,7 @@
 
 use super::damage::{damaged, truncated};
 use super::samples::{DecodedWhole, Layout, Opened, Samples};
-use super::{limits, srgb};
+use super::{input, limits, srgb};
 use crate::error::{Error, Result};
 use crate::map::HeightType;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
@@ -12,7 +12,7 @@ use std::path::Path;
 
 /// Opens and decodes a file.
 pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<Opened> {
-    let file = File::open(path).map_err(Error::io(path))?;
+    let file = input::open(path)?;
     // The decoders of these two hold the stored bytes, and read them before anything else can be asked.
     let is_held = matches!(format, ImageFormat::Jpeg | ImageFormat::WebP);
     let held = if is_held { file.metadata().map_err(Error::io(path))?.len() } else { 0 };

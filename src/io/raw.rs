@@ -1,5 +1,6 @@
 //! Headerless files: rows of heights and nothing else.
 
+use super::input;
 use super::samples::{Layout, Opened, SampleRows, bytes_mut};
 use crate::error::{Error, Result};
 use crate::map::{HeightType, HeightsMut, Size};
@@ -101,7 +102,7 @@ struct RawRows {
 
 /// Opens a headerless file, whose length must be what `layout` says.
 pub(super) fn open(path: &Path, layout: RawLayout) -> Result<Opened> {
-    let file = File::open(path).map_err(Error::io(path))?;
+    let file = input::open(path)?;
     let found = file.metadata().map_err(Error::io(path))?.len();
     let expected = layout.size.texels() as u128 * layout.kind.depth().bytes() as u128;
     if u128::from(found) != expected {

@@ -4,8 +4,8 @@ use super::choose::{Wanted, choose};
 use crate::error::{Error, Result};
 use crate::io::damage::{damaged, truncated};
 use crate::io::groups::{GroupDecoder, GroupedRows};
-use crate::io::limits;
 use crate::io::samples::{Layout, Opened, Samples};
+use crate::io::{input, limits};
 use crate::map::HeightType;
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{Chunk, CompressedBlock};
@@ -47,7 +47,7 @@ struct BlockChannel {
 
 /// Opens an EXR: half and float channels, of scan lines or tiles, of every compression that the decoder knows.
 pub(crate) fn open(path: &Path, wanted: Wanted<'_>, max_bytes: u64) -> Result<Opened> {
-    let file = File::open(path).map_err(Error::io(path))?;
+    let file = input::open(path)?;
     let file_bytes = file.metadata().map_err(Error::io(path))?.len();
     let mut file = BufReader::new(file);
     let meta = MetaData::read_from_buffered(&mut file, false).map_err(reason(path))?;

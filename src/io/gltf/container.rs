@@ -3,6 +3,7 @@
 use super::document::{Buffer, Document, ModelFile, Origin, index};
 use super::uri::{Uri, file_of};
 use crate::error::{Error, Result};
+use crate::io::input::{self, Found};
 use crate::io::limits;
 use serde_json::Value;
 use std::path::Path;
@@ -74,10 +75,11 @@ const LISTS: [&str; 11] = [
 
 /// A file of at most `limit` bytes.
 pub(in crate::io) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>> {
-    let length = std::fs::metadata(path).map_err(Error::io(path))?.len();
-    limits::check_model(path, length, limit)?;
-    let bytes = std::fs::read(path).map_err(Error::io(path))?;
+    let found = Found::at(path)?;
+    limits::check_model(path, found.length(), limit)?;
+    let bytes = input::read(path, limit)?;
     limits::check_model(path, bytes.len() as u64, limit)?;
+    found.check()?;
     Ok(bytes)
 }
 

@@ -1,5 +1,8 @@
 //! Models: what users read, give tangents and write.
 
+#[cfg(test)]
+mod replaced;
+
 use super::document::{Document, ModelFile};
 use super::edit::{Edited, Made};
 use super::elements::Elements;
@@ -223,10 +226,10 @@ impl Model {
     /// A .gltf made of a .glb or an OBJ has its buffer beside it (`name.bin`); one made of a .gltf has the new data in
     /// `name_tangents.bin` beside it, or in a data URI if all its buffers are. In another folder than the one it was
     /// read from, the files that the model refers to are copied beside it; a .glb made of a .gltf or an OBJ holds its
-    /// images. Missing folders are made. Each file appears when it is complete, the model last.
+    /// images. Missing folders are made. Each file appears when it is complete, the model last; if it replaces another
+    /// model, the old one or the new one is there at any moment, with its own buffers.
     ///
-    /// A file beside the model is replaced only if it holds a buffer of the model that was read, or of the one that
-    /// is replaced.
+    /// A file beside the model is replaced only if it holds a buffer of the model that is replaced.
     ///
     /// # Errors
     /// [`Error::File`] if the extension is another, a file beside the model exists with other content, a file that the
@@ -239,12 +242,17 @@ impl Model {
     /// The same; no file appears if it is cancelled before all are complete.
     pub(crate) fn write_unless_cancelled(&self, path: &Path, monitor: &Monitor) -> Result<ModelFiles> {
         ModelFormat::of(path)?;
+        write::write(&self.document, self.edited()?, path, monitor)
+    }
+
+    /// The document with what was made for it.
+    fn edited(&self) -> Result<Edited<'_>> {
         let mut edited = Edited::new(&self.document);
         for (&primitive, made) in &self.made {
             let (geometry, places) = &self.geometries[primitive];
             edited.apply(geometry, places, made).map_err(|error| named(&self.document, places[0], error))?;
         }
-        write::write(&self.document, edited, path, monitor)
+        Ok(edited)
     }
 
     fn geometry(&self, primitive: usize) -> Result<&(Geometry, Vec<Place>)> {

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::io::damage::{damaged, truncated};
 use crate::io::groups::{GroupDecoder, GroupedRows};
 use crate::io::samples::{Layout, NoData, Opened, Samples};
-use crate::io::{limits, srgb};
+use crate::io::{input, limits, srgb};
 use crate::map::HeightType;
 use std::fs::File;
 use std::io::{BufReader, ErrorKind};
@@ -46,7 +46,7 @@ impl Grid {
 ///
 /// A signed sample v becomes v + 2^(b-1): of heights, the slopes are the same.
 pub(crate) fn open(path: &Path, max_bytes: u64) -> Result<Opened> {
-    let file = File::open(path).map_err(Error::io(path))?;
+    let file = input::open(path)?;
     let buffer_bytes = max_bytes.try_into().unwrap_or(usize::MAX);
     let mut decoder_limits = Limits::default();
     decoder_limits.decoding_buffer_size = buffer_bytes;
