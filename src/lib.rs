@@ -171,7 +171,7 @@ mod mesh;
 mod names;
 mod ops;
 pub mod stream;
-mod verify;
+pub mod verify;
 
 pub use baker::{Baked, Baker, Blended, Ran};
 pub use devices::{Device, devices};

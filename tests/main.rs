@@ -3,6 +3,7 @@
 mod blend;
 #[cfg(feature = "cli")]
 mod cli;
+mod faults;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod inspect;
@@ -15,3 +16,4 @@ mod sabotage;
 mod stream;
 mod support;
 mod tangents;
+mod verify;

@@ -100,9 +100,13 @@ impl Baker {
         Self::only(Reference)
     }
 
+    fn only(backend: impl Backend + 'static) -> Self {
+        Self::on(Arc::new(backend))
+    }
+
     /// This backend and nothing else.
-    pub(crate) fn only(backend: impl Backend + 'static) -> Self {
-        Self { backend: Arc::new(backend), fallback: None, reason: "asked for".into() }
+    pub(crate) fn on(backend: Arc<dyn Backend>) -> Self {
+        Self { backend, fallback: None, reason: "asked for".into() }
     }
 
     /// What runs: the backend and its device.

@@ -21,6 +21,7 @@ Examples:
   texbake blend base_normal.png detail_normal.png -o normal.png --tile
   texbake tangents model.glb -o model_t.glb
   texbake devices
+  texbake verify
 
 Exit status: 0 all went well, 1 something failed, 2 wrong arguments or
 settings, 130 interrupted.")]
@@ -39,6 +40,7 @@ pub enum Command {
     Check(Box<super::check::CheckArguments>),
     Diff(Box<super::diff::DiffArguments>),
     Devices(DevicesArguments),
+    Verify(Box<super::verify::VerifyArguments>),
 }
 
 /// Bake one height map into a normal map

@@ -16,6 +16,7 @@ mod settings;
 mod single;
 mod tangents;
 mod values;
+mod verify;
 
 use args::{Arguments, Command};
 use clap::Parser;
@@ -36,6 +37,7 @@ pub fn run() -> ExitCode {
         Command::Check(arguments) => check::check(arguments),
         Command::Diff(arguments) => diff::diff(arguments),
         Command::Devices(arguments) => devices::devices(arguments),
+        Command::Verify(arguments) => verify::verify(arguments),
     };
     let exit = done.unwrap_or_else(|failure| {
         print::say(format_args!("error: {failure}"));

@@ -7,6 +7,7 @@ use texbake::batch::{
     BlendJob, BlendOutcome, FileResult, Job, ModelTangents, Outcome, ParallaxNumbers, TangentJob, Totals,
     describe_codes,
 };
+use texbake::verify::{Agreement, Comparison, Errors};
 use texbake::{Baked, Baker, Device, HeightType, NormalFormat, Ran, Scale, Size};
 
 /// Longer folders get a table of what was not baked, and of the slowest.
@@ -269,6 +270,49 @@ pub fn device_table(devices: &[Device]) -> String {
         table.add_row([&device.name, &device.api, &device.kind, &device.driver, &self_test, &picked]);
     }
     table.trim_fmt()
+}
+
+/// How each operation of a device agrees with the specification.
+pub fn comparison_table(comparisons: &[Comparison]) -> String {
+    let header = ["operation", "precision", "cases", "values", "differ", "largest", "mean", "bound", "result"];
+    let mut table = plain_table(&header, &[2, 3, 4]);
+    for comparison in comparisons {
+        let Agreement { values, differing, codes, ulps, degrees, .. } = comparison.agreement;
+        let errors = |of: fn(&Errors) -> f64| match differing {
+            0 => String::new(),
+            _ => format!("{} codes, {} ulp, {}°", short(of(&codes)), short(of(&ulps)), short(of(&degrees))),
+        };
+        let bound = comparison.bound.map_or("same bits".into(), |bound| {
+            format!("{} codes, {} ulp, {}°", short(bound.codes), short(bound.ulps), short(bound.degrees))
+        });
+        let result = match comparison.failed_cases {
+            0 if comparison.passed() => "passed".to_owned(),
+            0 => "FAILED: nothing was compared".to_owned(),
+            failed => format!("FAILED in {failed}"),
+        };
+        let (largest, mean) = (errors(|errors| errors.largest), errors(|errors| errors.mean));
+        table.add_row([
+            comparison.operation,
+            &comparison.precision,
+            &comparison.cases.to_string(),
+            &values.to_string(),
+            &differing.to_string(),
+            &largest,
+            &mean,
+            &bound,
+            &result,
+        ]);
+    }
+    table.trim_fmt()
+}
+
+/// A number with two digits that tell something.
+fn short(number: f64) -> String {
+    match number {
+        0.0 => "0".into(),
+        0.01..1000.0 => format!("{:.2}", number).trim_end_matches('0').trim_end_matches('.').into(),
+        _ => format!("{number:.1e}"),
+    }
 }
 
 fn plain_table(header: &[&str], numbers: &[usize]) -> Table {

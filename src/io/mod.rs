@@ -21,6 +21,7 @@ pub(crate) mod replace;
 mod samples;
 mod sink;
 mod srgb;
+mod temporary;
 mod tiff;
 
 pub use channel::Channel;

@@ -1,5 +1,11 @@
 //! Files that appear under their name only when they are complete.
+//!
+//! Under a final name there is, at any moment, what was there before, or the complete new file: when the bake fails or
+//! is interrupted, when the disk is full, and when the process is killed. The bytes are on the disk before the file
+//! gets its name. What is being written stands beside it as `.texbake-XXXXXX.tmp`; see `temporary` for who removes
+//! what a killed process left.
 
+use super::temporary;
 use crate::error::{Error, Result};
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Seek, SeekFrom, Write};
@@ -33,10 +39,18 @@ impl Replacement {
     pub fn create(target: &Path) -> Result<Self> {
         // A link keeps its place and its target is replaced.
         let target = fs::canonicalize(target).unwrap_or_else(|_| target.into());
-        let existing = fs::metadata(&target).ok();
+        let existing = match fs::metadata(&target) {
+            Ok(existing) => Some(existing),
+            Err(error) if error.kind() == ErrorKind::NotFound => None,
+            // A name that is too long, a circle of links: better told now than after the bake.
+            Err(error) => return Err(Error::io(&target)(error)),
+        };
         if let Some(existing) = &existing {
             if existing.is_dir() {
                 return Err(Error::file(target, "it is a folder", "give the name of a file"));
+            }
+            if !existing.is_file() {
+                return Err(Error::file(target, "it is a device or a pipe", "give the name of a file"));
             }
             if existing.permissions().readonly() {
                 return Err(Error::file(target, "it is read-only", "make it writable, or write elsewhere"));
@@ -46,15 +60,7 @@ impl Replacement {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".texbake-").suffix(".tmp");
-        #[cfg(unix)]
-        {
-            // What File::create asks for; the system takes the umask away. Temporary files are private otherwise.
-            use std::os::unix::fs::PermissionsExt;
-            builder.permissions(fs::Permissions::from_mode(0o666));
-        }
-        let temporary = builder.tempfile_in(folder).map_err(|source| {
+        let temporary = temporary::create(folder).map_err(|source| {
             // The user knows the target, not the temporary file's name.
             Error::io(&target)(io::Error::new(source.kind(), system_reason(&source)))
         })?;
@@ -91,7 +97,11 @@ impl Replacement {
     /// Brings the bytes to the disk, then gives the file its name.
     pub fn commit(self) -> Result<()> {
         self.sync()?;
-        self.temporary.persist(&self.target).map_err(|failed| Error::io(&self.target)(failed.error))?;
+        let Self { temporary, target, .. } = self;
+        temporary.persist(&target).map_err(|failed| match failed.error.kind() {
+            ErrorKind::NotFound => Error::file(&target, "its folder went while it was written", "run it again"),
+            _ => Error::io(&target)(failed.error),
+        })?;
         Ok(())
     }
 }

@@ -65,6 +65,10 @@ impl<F: MapFormat> CodeMap<F> {
     }
 
     /// The codes, to fill.
+    pub(crate) fn into_codes(self) -> Codes {
+        self.codes
+    }
+
     pub(crate) fn codes_mut(&mut self) -> CodesMut<'_> {
         self.codes.as_mut()
     }

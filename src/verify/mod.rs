@@ -1,4 +1,36 @@
-//! CPU and GPU held against each other.
+//! Proof that a device computes what it should: every kernel against its CPU twin, on this machine.
+//!
+//! ```
+//! use texbake::stream::Monitor;
+//! use texbake::verify::{Options, Subject};
+//!
+//! let options = Options { only: Some("normal map, u8".into()), ..Default::default() };
+//! let report = Subject::cpu().verify(&options, &Monitor::default(), &mut |_| ())?;
+//! assert!(report.passed(), "{report:?}");
+//! # Ok::<(), texbake::Error>(())
+//! ```
 
-#[cfg(all(test, feature = "gpu"))]
+mod agreement;
+mod answer;
+mod bounds;
+mod cases;
+mod chance;
+mod job;
+mod mismatch;
+mod oracle;
+#[cfg(feature = "gpu")]
+mod own_kernel;
+#[cfg(feature = "gpu")]
 mod page;
+mod report;
+mod sabotage;
+mod shrink;
+mod subject;
+
+pub use agreement::{Agreement, Bound, Errors};
+#[cfg(feature = "gpu")]
+pub use own_kernel::{Binding, KernelComparison, OwnKernel, Tolerance, WordMismatch, Work};
+#[cfg(feature = "gpu")]
+pub use page::Page;
+pub use report::{Comparison, DeviceReport, Mismatch, Report};
+pub use subject::{Options, Progress, Subject};

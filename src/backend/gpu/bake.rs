@@ -73,16 +73,16 @@ pub(super) fn run(
 ) -> Result<()> {
     let mut transfer = Transfer::new(device, plan)?;
     while let Some(band) = bands.next()? {
-        transfer.send(band.rows(), &layers(&band), sinks)?;
+        transfer.send(band.rows(), |rows| layers(&band.part(rows.start, rows.len())), sinks)?;
     }
     transfer.finish(sinks)
 }
 
 /// The row above, the rows and the row below of a band.
-pub(super) fn layers<'a>(band: &HeightBand<'a>) -> [Layer<'a>; 3] {
-    fn cut<'a, T>(band: &Band<'a, T>, codes: impl Fn(&'a [T]) -> CodesRef<'a>) -> [Layer<'a>; 3] {
+pub(super) fn layers<'a>(band: &HeightBand<'a>) -> Vec<Layer<'a>> {
+    fn cut<'a, T>(band: &Band<'a, T>, codes: impl Fn(&'a [T]) -> CodesRef<'a>) -> Vec<Layer<'a>> {
         let layer = |rows, heights| Layer { rows, codes: codes(heights) };
-        [layer(1, band.above), layer(band.body.len() / band.width, band.body), layer(1, band.below)]
+        vec![layer(1, band.above), layer(band.body.len() / band.width, band.body), layer(1, band.below)]
     }
     match band {
         HeightBand::U8(band) => cut(band, CodesRef::U8),

@@ -2,6 +2,7 @@
 
 use super::adapters::describe;
 use super::kernel::{Kernel, KernelSource};
+use super::pace::{Pace, Submission, Work};
 use super::slot::Slot;
 use crate::error::{Error, Result};
 use std::any::Any;
@@ -11,10 +12,13 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Duration;
 use wgpu::{
-    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, ComputePipeline,
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, CommandBuffer, ComputePipeline,
     ComputePipelineDescriptor, DeviceDescriptor, ErrorFilter, PipelineCompilationOptions, PipelineLayoutDescriptor,
-    ShaderModule, ShaderModuleDescriptor, ShaderSource,
+    PollError, PollType, ShaderModule, ShaderModuleDescriptor, ShaderSource,
 };
+
+/// A device that has not answered for this long will not: drivers reset after two seconds.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A device that bakes.
 pub(crate) struct Device {
@@ -26,10 +30,43 @@ pub(crate) struct Device {
     pipelines: Mutex<HashMap<Kernel, ComputePipeline>>,
     idle: Mutex<Vec<Slot>>,
     next_nonce: AtomicU32,
+    pub pace: Pace,
+    /// How long it is waited for.
+    pub patience: Duration,
     /// Kernels whose bytes were compared with the reference's.
     tested: Mutex<HashSet<Kernel>>,
     /// Why the device cannot be used any more.
     lost: Arc<OnceLock<String>>,
+    /// What a test makes of the bytes that come back.
+    #[cfg(test)]
+    pub spoil: Mutex<Option<Spoil>>,
+}
+
+/// Changes the bytes of a download.
+#[cfg(test)]
+pub(super) type Spoil = Box<dyn FnMut(&mut Vec<u8>) + Send>;
+
+/// Why a device did not do something.
+#[derive(Debug)]
+pub(super) enum Fault {
+    /// There was no memory left: it may do less.
+    OutOfMemory(Error),
+    Other(Error),
+}
+
+impl From<Error> for Fault {
+    fn from(error: Error) -> Self {
+        Self::Other(error)
+    }
+}
+
+impl Fault {
+    /// What is told of it. No `From`: a second one for the public error would leave its users' `?` without a type.
+    pub fn into_error(self) -> Error {
+        match self {
+            Self::OutOfMemory(error) | Self::Other(error) => error,
+        }
+    }
 }
 
 impl Device {
@@ -38,7 +75,6 @@ impl Device {
     /// # Errors
     /// [`Error::Device`] if the driver refuses.
     pub fn open(adapter: &wgpu::Adapter) -> Result<Self> {
-        let name = describe(&adapter.get_info());
         // What every WebGPU device has, and the buffer sizes of this one.
         let own = adapter.limits();
         let limits = wgpu::Limits {
@@ -46,6 +82,15 @@ impl Device {
             max_storage_buffer_binding_size: own.max_storage_buffer_binding_size,
             ..wgpu::Limits::downlevel_defaults().using_resolution(own)
         };
+        Self::open_with(adapter, limits)
+    }
+
+    /// Opens an adapter for as much as `limits` say.
+    ///
+    /// # Errors
+    /// As [`Device::open`].
+    pub fn open_with(adapter: &wgpu::Adapter, limits: wgpu::Limits) -> Result<Self> {
+        let name = describe(&adapter.get_info());
         let descriptor = DeviceDescriptor { label: Some("texbake"), required_limits: limits, ..Default::default() };
         let opened = pollster::block_on(adapter.request_device(&descriptor));
         let (device, queue) = opened.map_err(|error| Error::device(&name, error))?;
@@ -66,8 +111,12 @@ impl Device {
             pipelines: Mutex::default(),
             idle: Mutex::default(),
             next_nonce: AtomicU32::new(1),
+            pace: Pace::default(),
+            patience: PATIENCE,
             tested: Mutex::default(),
             lost: Arc::default(),
+            #[cfg(test)]
+            spoil: Mutex::default(),
         }
     }
 
@@ -101,6 +150,11 @@ impl Device {
     /// Runs calls into wgpu, and returns whatever is wrong with them as an error: what it would report elsewhere, to
     /// whom it may concern, and its panics, which a lost device can cause (gfx-rs/wgpu: poll).
     pub fn guarded<T>(&self, work: impl FnOnce() -> Result<T>) -> Result<T> {
+        self.attempt(work).map_err(Fault::into_error)
+    }
+
+    /// The same; tells whether memory was short.
+    pub fn attempt<T>(&self, work: impl FnOnce() -> Result<T>) -> Result<T, Fault> {
         self.check()?;
         let scopes = [ErrorFilter::Internal, ErrorFilter::OutOfMemory, ErrorFilter::Validation]
             .map(|filter| self.device.push_error_scope(filter));
@@ -113,10 +167,69 @@ impl Device {
             (_, Some(error)) => self.error(error),
             (Ok(Err(error)), None) => error,
         };
+        let is_out_of_memory = matches!(reported.first(), Some(wgpu::Error::OutOfMemory { .. }));
         // That a device is lost is the cause of whatever else is wrong, and is told at a poll only.
         let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(Duration::from_secs(1)) };
         let _ = catch_unwind(AssertUnwindSafe(|| self.device.poll(wait)));
-        Err(self.check().err().unwrap_or(failure))
+        self.check()?;
+        Err(if is_out_of_memory { Fault::OutOfMemory(failure) } else { Fault::Other(failure) })
+    }
+
+    /// Submits commands that compute `work`, or only copy.
+    pub fn submit(&self, work: Option<Work>, commands: CommandBuffer) -> Submission {
+        self.pace.begin(work, || self.queue.submit([commands]))
+    }
+
+    /// Waits until a submission is done, and sees when those before it end.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if the device is lost, or does not answer.
+    pub fn wait(&self, submission: &Submission) -> Result<()> {
+        while let Some(next) = self.pace.next_until(submission) {
+            let is_over = self.is_done(&next.submission, Duration::ZERO)?;
+            if !is_over {
+                self.patiently(&next.submission)?;
+            }
+            self.pace.end(next, !is_over);
+        }
+        // Another thread may have taken it over and be waiting still.
+        self.patiently(submission)
+    }
+
+    fn patiently(&self, submission: &Submission) -> Result<()> {
+        match self.is_done(submission, self.patience)? {
+            true => Ok(()),
+            false => Err(self.give_up(format_args!("it has not answered for {:?}", self.patience))),
+        }
+    }
+
+    /// Whether a submission is done after a time.
+    fn is_done(&self, submission: &Submission, timeout: Duration) -> Result<bool> {
+        let wait = PollType::Wait { submission_index: Some(submission.index.clone()), timeout: Some(timeout) };
+        let polled = self.device.poll(wait);
+        self.check()?;
+        match polled {
+            Ok(_) => Ok(true),
+            Err(PollError::Timeout) => Ok(false),
+            // Of a device that is lost without having told it yet.
+            Err(error @ PollError::WrongSubmissionIndex(..)) => Err(self.error(error)),
+        }
+    }
+
+    /// What has come back in a slot.
+    #[cfg(not(test))]
+    pub fn returned(&self, slot: &Slot) -> Result<wgpu::BufferView> {
+        slot.download.get_mapped_range(..).map_err(|error| self.error(error))
+    }
+
+    /// The same, as a test spoils it.
+    #[cfg(test)]
+    pub fn returned(&self, slot: &Slot) -> Result<Vec<u8>> {
+        let mut bytes = slot.download.get_mapped_range(..).map_err(|error| self.error(error))?.to_vec();
+        if let Some(spoil) = lock(&self.spoil).as_mut() {
+            spoil(&mut bytes);
+        }
+        Ok(bytes)
     }
 
     /// Whether a kernel has passed its test; the caller tests it otherwise.
@@ -140,7 +253,6 @@ impl Device {
     }
 
     /// Runs another text in place of a kernel's own.
-    #[cfg(test)]
     pub fn substitute(&self, source: KernelSource, text: &str) {
         let source_text = ShaderSource::Wgsl(text.into());
         let module =
@@ -196,17 +308,25 @@ impl Device {
     }
 
     /// A slot of earlier jobs that holds this many bytes of inputs and outputs, or a new one.
-    pub fn slot(&self, input_bytes: u64, output_bytes: u64) -> Slot {
+    ///
+    /// # Errors
+    /// [`Fault::OutOfMemory`] if there is no room for a new one.
+    pub fn slot(&self, input_bytes: u64, output_bytes: u64) -> Result<Slot, Fault> {
         let mut idle = lock(&self.idle);
         match idle.iter().position(|slot| slot.holds(input_bytes, output_bytes)) {
-            Some(index) => idle.swap_remove(index),
+            Some(index) => Ok(idle.swap_remove(index)),
             None => {
                 // A slot that is too small would never be used again by a set of equal maps.
                 idle.pop();
                 drop(idle);
-                Slot::new(&self.device, input_bytes, output_bytes)
+                self.attempt(|| Ok(Slot::new(&self.device, input_bytes, output_bytes)))
             }
         }
+    }
+
+    /// Frees the slots that no job uses, and tells whether there were any.
+    pub fn free_slots(&self) -> bool {
+        !std::mem::take(&mut *lock(&self.idle)).is_empty()
     }
 
     /// What marks the rows of a dispatch: another odd number for each of 2^31, so that neither a slot's earlier
@@ -224,6 +344,11 @@ impl Device {
     pub fn greatest_binding(&self) -> usize {
         let limits = self.device.limits();
         limits.max_buffer_size.min(limits.max_storage_buffer_binding_size).min(i32::MAX as u64) as usize
+    }
+
+    /// The most workgroups of one dispatch in each dimension.
+    pub fn greatest_dispatch(&self) -> usize {
+        self.device.limits().max_compute_workgroups_per_dimension as usize
     }
 }
 

@@ -5,7 +5,7 @@ use super::device::Device;
 use super::kernel::Kernel;
 use super::operation::{Operation, Places, Rows, row_bytes};
 use super::transfer::dispatch;
-use super::{GREATEST_DISPATCH, Gpu, Untested, adapters};
+use super::{Gpu, Untested, adapters};
 use crate::error::{Error, Result};
 use crate::map::{Channels, Depth, Encoding, HeightType, NormalFormat, Size};
 use crate::ops::bake::{BakePlan, NormalOptions};
@@ -217,8 +217,9 @@ impl NormalBake<'_> {
             Rows { place: (row * words) as u32, words: words as u32 }
         };
         let heights_at = |row: isize| place(heights, plan.edges.y.resolve(row, height));
-        for first in (0..height).step_by(GREATEST_DISPATCH) {
-            let rows = GREATEST_DISPATCH.min(height - first);
+        let greatest_dispatch = device.greatest_dispatch();
+        for first in (0..height).step_by(greatest_dispatch) {
+            let rows = greatest_dispatch.min(height - first);
             let [above, body, below] = [first as isize - 1, first as isize, (first + rows) as isize];
             let places = Places {
                 rows: rows as u32,

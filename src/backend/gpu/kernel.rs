@@ -187,7 +187,6 @@ pub(crate) const TANGENTS_WEIGHTED_FAST: KernelSource = KernelSource {
 pub(crate) const ARITHMETIC: [&str; 4] = [ACOS, WIDE, SOFT_FLOAT, GRADUAL];
 
 /// Every kernel that a backend may run.
-#[cfg(test)]
 pub(crate) const ALL: [KernelSource; 20] = [
     BAKE_INTEGERS,
     BAKE_FLOATS,

@@ -6,10 +6,11 @@ use super::operation::{Layer, Operation, row_bytes};
 use super::self_test::{By, HEIGHT, WIDTH, scrambled, test};
 use super::transfer::Transfer;
 use crate::error::Result;
-use crate::map::{Codes, Depth, Size, TexelFormat};
+use crate::map::{Codes, CodesRef, Depth, Size, TexelFormat};
 use crate::ops::Precision;
-use crate::stream::{CodeSink, LayerBands, MapLayers};
+use crate::stream::{CodeSink, LayerBand, LayerBands, MapLayers};
 use half::f16;
+use std::ops::Range;
 
 /// An operation on several maps.
 pub(super) trait LayerOperation: Operation + Sized {
@@ -41,10 +42,18 @@ pub(super) fn run(
 ) -> Result<()> {
     let mut transfer = Transfer::new(device, operation)?;
     while let Some(band) = bands.next()? {
-        let layers: Vec<Layer<'_>> = band.layers.iter().map(|&codes| Layer { rows: band.rows, codes }).collect();
-        transfer.send(band.rows, &layers, sinks)?;
+        transfer.send(band.rows, |rows| layers(&band, rows), sinks)?;
     }
     transfer.finish(sinks)
+}
+
+/// Some rows of a band.
+fn layers<'a>(band: &LayerBand<'a>, rows: Range<usize>) -> Vec<Layer<'a>> {
+    let part = |codes: &CodesRef<'a>| {
+        let row_codes = codes.len() / band.rows;
+        Layer { rows: rows.len(), codes: codes.slice(rows.start * row_codes..rows.end * row_codes) }
+    };
+    band.layers.iter().map(part).collect()
 }
 
 /// Before an operation's first run: small maps with its own options, once for each kernel.

@@ -20,7 +20,7 @@ impl Words {
         }
     }
 
-    fn greatest(self) -> usize {
+    pub fn greatest(self) -> usize {
         self.inputs.max(self.outputs)
     }
 }
@@ -80,15 +80,15 @@ pub(super) struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    /// Parts of which neither inputs nor outputs have more than `greatest_words`.
-    pub fn new(plan: &'a TangentPlan<'a>, frame_words: usize, greatest_words: usize) -> Self {
+    /// Parts of which neither inputs nor outputs have more than `greatest_words`, from fan `next_fan` on.
+    pub fn new(plan: &'a TangentPlan<'a>, frame_words: usize, greatest_words: usize, next_fan: usize) -> Self {
         let [vertices, triangles] = [plan.surface.positions.len(), plan.surface.triangles.len()];
         let corners = plan.fans.corners.corners().len();
         let words = Words::new([vertices, triangles, plan.fans.count(), corners], frame_words);
-        let is_whole = words.greatest() <= greatest_words;
+        let is_whole = next_fan == 0 && words.greatest() <= greatest_words;
         let numbers = if is_whole { Numbers::all } else { Numbers::none };
         let (triangles, vertices) = (numbers(triangles), numbers(vertices));
-        Self { plan, frame_words, greatest_words, next_fan: 0, is_whole, triangles, vertices }
+        Self { plan, frame_words, greatest_words, next_fan, is_whole, triangles, vertices }
     }
 
     /// The fans of the next part, with its triangles and vertices numbered; none are left if it is empty.

@@ -17,11 +17,12 @@ mod layers;
 mod mesh_parts;
 mod operation;
 mod output;
+mod own_kernel;
+mod pace;
 mod parallax;
-#[cfg(test)]
 pub(crate) mod recording;
 #[cfg(test)]
-pub(crate) mod recording_tests;
+mod recording_tests;
 #[cfg(test)]
 mod reflection;
 mod self_test;
@@ -44,7 +45,9 @@ use crate::stream::{CodeSink, HeightBands, LayerBands};
 use device::Device;
 pub use hosted::{CodeTarget, HeightSource, Hosted, NormalBake};
 use layers::LayerOperation;
-use operation::{Operation, TEXELS_PER_INVOCATION, WORKGROUP, output_row_bytes};
+use operation::{Operation, greatest_row_bytes, row_groups};
+pub use own_kernel::Binding;
+pub(crate) use own_kernel::OwnPipeline;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use tangents::Limits;
 
@@ -62,9 +65,6 @@ pub(crate) struct Gpu {
 /// patience with one dispatch.
 const BAND_BYTES: usize = 8 << 20;
 
-/// The most workgroups of one dispatch in each dimension, on every WebGPU device.
-const GREATEST_DISPATCH: usize = 65_535;
-
 impl Untested {
     /// Opens the adapter that `selector` means, or the best one.
     ///
@@ -72,6 +72,24 @@ impl Untested {
     /// [`crate::Error::Device`] if there is none, or it does not open.
     pub fn open(selector: Option<&str>) -> Result<Self> {
         Self::open_adapter(&adapters::select(selector)?)
+    }
+
+    /// Every adapter of this machine, the best first, or why it does not open.
+    pub fn all() -> Vec<Result<Self>> {
+        adapters::all().iter().map(Self::open_adapter).collect()
+    }
+
+    /// Compiles a kernel of somebody else's.
+    ///
+    /// # Errors
+    /// [`crate::Error::Device`] with what the compiler says.
+    pub fn compile(&self, wgsl: &str, entry_point: &str, constants: &[(&str, f64)]) -> Result<OwnPipeline<'_>> {
+        OwnPipeline::new(&self.device, wgsl, entry_point, constants)
+    }
+
+    /// Runs other texts in place of the kernels' own.
+    pub fn replace_kernels(&self, text: impl Fn(&str) -> String) {
+        sources().iter().for_each(|source| self.device.substitute(*source, &text(&source.text())));
     }
 
     fn open_adapter(adapter: &wgpu::Adapter) -> Result<Self> {
@@ -86,12 +104,17 @@ impl Untested {
     /// Refuses rows that this device cannot take.
     fn check_width(&self, operation: &impl Operation) -> Result<()> {
         let width = operation.width();
-        // A band has at least one row of each layer, and a mark for each row of its maps.
-        let inputs: usize = operation.inputs().iter().sum();
-        let outputs: usize = output_row_bytes(operation).iter().sum::<usize>() + 4;
-        let groups = width.div_ceil(TEXELS_PER_INVOCATION * WORKGROUP);
-        if inputs.max(outputs) > self.device.greatest_binding() || groups > GREATEST_DISPATCH {
-            return Err(self.device.error(format_args!("rows of {width} texels are too wide for it")));
+        let (bytes, greatest_binding) = (greatest_row_bytes(operation), self.device.greatest_binding());
+        if bytes > greatest_binding {
+            return Err(self.device.error(format_args!(
+                "rows of {width} texels are too wide for it: {bytes} bytes in a buffer of at most {greatest_binding}"
+            )));
+        }
+        let (groups, greatest_dispatch) = (row_groups(width), self.device.greatest_dispatch());
+        if groups > greatest_dispatch {
+            return Err(self.device.error(format_args!(
+                "rows of {width} texels are too wide for it: {groups} workgroups where {greatest_dispatch} are allowed"
+            )));
         }
         Ok(())
     }
@@ -117,7 +140,7 @@ impl Backend for Untested {
     }
 
     fn band_rows(&self, row: RowBytes) -> usize {
-        (BAND_BYTES / row.read.max(row.written)).clamp(1, GREATEST_DISPATCH)
+        (BAND_BYTES / row.read.max(row.written)).max(1)
     }
 
     fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
@@ -209,6 +232,11 @@ impl Backend for Gpu {
         tangents_self_test::accept(&self.untested.device, plan)?;
         self.untested.tangents(plan, out)
     }
+}
+
+/// Every kernel's text.
+pub(crate) fn sources() -> &'static [kernel::KernelSource] {
+    &kernel::ALL
 }
 
 /// All adapters, each opened and tested, in the order in which `auto` would choose.

@@ -74,3 +74,15 @@ pub(super) fn row_bytes(width: usize, texel_bytes: usize) -> usize {
 pub(super) fn output_row_bytes(operation: &impl Operation) -> Vec<usize> {
     operation.outputs().iter().map(|format| row_bytes(operation.width(), format.bytes())).collect()
 }
+
+/// Bytes of a buffer for one row: of all layers, or of all maps and the row's mark.
+pub(super) fn greatest_row_bytes(operation: &impl Operation) -> usize {
+    let inputs: usize = operation.inputs().iter().sum();
+    let outputs: usize = output_row_bytes(operation).iter().sum();
+    inputs.max(outputs + 4)
+}
+
+/// Workgroups that compute a row.
+pub(super) fn row_groups(width: usize) -> usize {
+    width.div_ceil(TEXELS_PER_INVOCATION * WORKGROUP)
+}

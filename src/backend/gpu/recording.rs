@@ -3,15 +3,15 @@
 //!
 //! The bytes are those that [`super::transfer`] and [`super::tangents`] send; the answers are the reference's.
 
+use super::bake;
 use super::device::lock;
 use super::input::one_channel;
 use super::kernel::Kernel;
 use super::layers::LayerOperation;
 use super::mesh_parts::Parts;
-use super::operation::{Layer, Operation, Rows, WORKGROUP, output_row_bytes};
+use super::operation::{Layer, Operation, Rows, WORKGROUP, output_row_bytes, row_groups};
 use super::tangents::{self, NEGATIVE};
-use super::transfer::{placed, workgroups, write_layers};
-use super::{GREATEST_DISPATCH, bake};
+use super::transfer::{placed, write_layers};
 use crate::backend::cpu::Reference;
 use crate::backend::{Backend, RowBytes, fill_rows};
 use crate::baker::Baker;
@@ -30,8 +30,6 @@ use wgpu::WriteOnly;
 /// One computation: its passes run one after the other on the same inputs and outputs.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Recording {
-    /// The entry point of the operation's last kernel: bake, blend, parallax or tangents.
-    pub operation: &'static str,
     pub precision: Precision,
     /// The maps in and out, in words.
     pub formats: String,
@@ -120,32 +118,14 @@ pub(crate) enum CodeType {
 pub(crate) enum Tolerance {
     /// The same bits.
     None,
-    /// Steps from one code, or one float of the format, to the next.
-    Codes(u32),
-    /// The absolute difference of two numbers.
-    Difference(f32),
+    /// Steps from one code to the next.
+    Codes(f64),
+    /// The absolute difference of two floats.
+    Difference(f64),
 }
 
 /// What marks the rows and tangents of a recording. Below 2^31, as tangents want it; no poison of one repeated byte.
 const NONCE: u32 = 0x7465_7862;
-
-/// `fast` floats of 32 bits: 2^-20 is eight times what a component of 1 loses where a root and two divisions, each off
-/// by 2.5 ULP as WGSL allows, follow each other.
-const FAST_DIFFERENCE: f32 = 1.0 / 1_048_576.0;
-
-/// `fast` tangents on triangles that are no slivers: as `tangent_tests` allows.
-const FAST_TANGENT_DIFFERENCE: f32 = 1e-4;
-
-impl Tolerance {
-    /// Of codes of a precision.
-    pub fn of(precision: Precision, depth: Depth) -> Self {
-        match (precision, depth) {
-            (Precision::Exact, _) => Self::None,
-            (Precision::Fast, Depth::Float32) => Self::Difference(FAST_DIFFERENCE),
-            (Precision::Fast, _) => Self::Codes(1),
-        }
-    }
-}
 
 impl CodeType {
     fn of(format: TexelFormat) -> Self {
@@ -222,9 +202,9 @@ impl Backend for Recorder {
         Reference.device()
     }
 
-    /// A map is one band.
+    /// A map is one band: a dispatch on any device.
     fn band_rows(&self, _: RowBytes) -> usize {
-        GREATEST_DISPATCH
+        65_535
     }
 
     fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
@@ -262,8 +242,25 @@ impl Recording {
     /// The job's.
     pub fn of<T>(job: impl FnOnce(&Baker) -> Result<T>) -> Result<Vec<Self>> {
         let recorder = Recorder::default();
-        job(&Baker::only(recorder.clone()))?;
+        job(&Baker::on(Arc::new(recorder.clone())))?;
         Ok(std::mem::take(&mut *lock(&recorder.0)))
+    }
+
+    /// Lets `fast` codes differ by this many, and floats by this many units in the last place of 1. Bits stay bits.
+    pub fn allow(&mut self, codes: f64, ulps: f64) {
+        for expected in self.expected.iter_mut().filter(|_| self.precision == Precision::Fast) {
+            expected.tolerance = match expected.rows.code {
+                CodeType::Bits => Tolerance::None,
+                CodeType::F16 => Tolerance::Difference(ulps / 1024.0),
+                CodeType::F32 => Tolerance::Difference(ulps / 8_388_608.0),
+                CodeType::U8 | CodeType::I8 | CodeType::U16 | CodeType::I16 => Tolerance::Codes(codes),
+            };
+        }
+    }
+
+    /// Values that are compared.
+    pub fn values(&self) -> usize {
+        self.expected.iter().map(|expected| expected.bytes.len() / expected.rows.code.bytes()).sum()
     }
 
     /// The bake of a band.
@@ -334,8 +331,7 @@ impl Recording {
         let mut expected: Vec<Expected> = maps
             .map(|(((codes, format), &at), name)| {
                 let rows = RowsOf::texels(at, height, width, CodeType::of(format), format.channels);
-                let tolerance = Tolerance::of(precision, format.depth);
-                Expected { name, rows, tolerance, bytes: codes.as_ref().bytes().to_vec() }
+                Expected { name, rows, tolerance: Tolerance::None, bytes: codes.as_ref().bytes().to_vec() }
             })
             .collect();
         let marks = RowsOf::words(places.marks as usize, 1, height, 1, CodeType::Bits);
@@ -344,10 +340,9 @@ impl Recording {
 
         let kernel = operation.kernel();
         let this = Self {
-            operation: kernel.source.entry_point,
             precision,
             formats,
-            passes: vec![Pass::new(kernel, operation.params(&places), workgroups(width, height))],
+            passes: vec![Pass::new(kernel, operation.params(&places), [row_groups(width) as u32, height as u32])],
             inputs,
             output_words: places.marks as usize + height,
             given: Vec::new(),
@@ -358,9 +353,9 @@ impl Recording {
 
     /// The tangents of a mesh's fans: a pass over its triangles, then one over its fans.
     fn of_tangents(plan: &TangentPlan<'_>, answer: &[[f32; 4]]) -> Self {
-        let mut parts = Parts::new(plan, tangents::frame_words(plan.method), usize::MAX);
+        let mut parts = Parts::new(plan, tangents::frame_words(plan.method), usize::MAX, 0);
         let fans = parts.next().unwrap_or(0..0);
-        let words = tangents::words(plan, &parts, &fans);
+        let words = tangents::words_of(plan, &parts, &fans);
         let mut inputs = vec![0; 4 * words.inputs];
         let written = tangents::write(WriteOnly::from_mut(inputs.as_mut_slice()), plan, &parts, &fans);
         let params = tangents::Params { nonce: NONCE, longest_row: u32::MAX, ..written };
@@ -373,18 +368,13 @@ impl Recording {
         let place = params.tangents as usize;
         let rows = RowsOf::words(place, 4, fans.len(), 3, CodeType::F32);
         let bytes = answer.iter().flat_map(|[x, y, z, _]| [x, y, z]).flat_map(|part| part.to_le_bytes()).collect();
-        let tolerance = match plan.precision {
-            Precision::Exact => Tolerance::None,
-            Precision::Fast => Tolerance::Difference(FAST_TANGENT_DIFFERENCE),
-        };
-        let directions = Expected { name: "tangents", rows, tolerance, bytes };
+        let directions = Expected { name: "tangents", rows, tolerance: Tolerance::None, bytes };
         let rows = RowsOf::words(place + 3, 4, fans.len(), 1, CodeType::Bits);
         let proofs = answer.iter().map(|[.., w]| NONCE | if *w < 0.0 { NEGATIVE } else { 0 });
         let bytes = proofs.flat_map(u32::to_le_bytes).collect();
         let signs = Expected { name: "signs", rows, tolerance: Tolerance::None, bytes };
         let normals = RowsOf::words(params.normals as usize, 3, fans.len(), 3, CodeType::F32);
         Self {
-            operation: "tangents",
             precision: plan.precision,
             formats: format!("{} of a mesh", plan.method),
             passes: passes.collect(),

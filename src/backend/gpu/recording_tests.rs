@@ -28,14 +28,16 @@ fn normal(encoding: Encoding, depth: Depth, channels: Channels, convention: Conv
 }
 
 /// Some of every kernel, in both precisions, with names.
-pub(crate) fn samples() -> Vec<(String, Recording)> {
+fn samples() -> Vec<(String, Recording)> {
     [bakes(), blends(), parallaxes(), tangents()].concat()
 }
 
 /// The one recording of a job.
 fn one<T>(job: impl FnOnce(&Baker) -> Result<T>) -> Recording {
     let recordings = Recording::of(job).unwrap();
-    let [recording] = <[Recording; 1]>::try_from(recordings).unwrap();
+    let [mut recording] = <[Recording; 1]>::try_from(recordings).unwrap();
+    // 2^-10: the torus is no place of slivers.
+    recording.allow(1.0, if recording.passes.len() == 2 { 8192.0 } else { 16.0 });
     recording
 }
 
@@ -216,8 +218,8 @@ impl Expected {
     fn agree(&self, got: (u32, i64, f64), expected: (u32, i64, f64)) -> bool {
         match self.tolerance {
             Tolerance::None => got.0 == expected.0,
-            Tolerance::Codes(steps) => got.1.abs_diff(expected.1) <= steps.into(),
-            Tolerance::Difference(most) => (got.2 - expected.2).abs() <= most.into(),
+            Tolerance::Codes(steps) => got.1.abs_diff(expected.1) as f64 <= steps,
+            Tolerance::Difference(most) => (got.2 - expected.2).abs() <= most,
         }
     }
 }

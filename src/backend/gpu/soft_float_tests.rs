@@ -31,7 +31,7 @@ fn frames(@builtin(global_invocation_id) id: vec3<u32>) {
 
 /// The kernel's results for up to 2^20 pairs.
 fn results(device: &Device, pairs: &[[u32; 2]]) -> Vec<[u32; 5]> {
-    let slot = device.slot(8 * pairs.len() as u64, 20 * pairs.len() as u64);
+    let slot = device.slot(8 * pairs.len() as u64, 20 * pairs.len() as u64).unwrap();
     let mut view = slot.upload.get_mapped_range_mut(..).unwrap();
     view.slice(..).copy_from_slice(bytemuck::cast_slice(pairs));
     drop(view);
@@ -50,7 +50,7 @@ fn results(device: &Device, pairs: &[[u32; 2]]) -> Vec<[u32; 5]> {
     pass.dispatch_workgroups(pairs.len().div_ceil(64) as u32, 1, 1);
     drop(pass);
     encoder.copy_buffer_to_buffer(&slot.outputs, 0, &slot.download, 0, slot.download.size());
-    let submission = device.queue.submit([encoder.finish()]);
+    let submission = device.submit(None, encoder.finish());
     Mapping::of(&slot, submission).wait(device).unwrap();
     let view = slot.download.get_mapped_range(..).unwrap();
     bytemuck::cast_slice(&view).to_vec()

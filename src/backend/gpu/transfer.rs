@@ -1,23 +1,21 @@
 //! Bands up, codes down: a ring of slots keeps the next band uploading while one computes and one reads back.
 
-use super::device::Device;
-use super::operation::{Layer, Operation, Places, Rows, TEXELS_PER_INVOCATION, WORKGROUP, output_row_bytes};
+use super::device::{Device, Fault};
+use super::kernel::Kernel;
+use super::operation::{Layer, Operation, Places, Rows, greatest_row_bytes, output_row_bytes, row_groups};
+use super::pace::{Submission, Work};
 use super::slot::Slot;
 use crate::backend::fill_rows;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::map::{CodesMut, CodesRef};
 use crate::stream::CodeSink;
 use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::mpsc::{Receiver, channel};
-use std::time::Duration;
-use wgpu::{CommandEncoderDescriptor, ComputePipeline, MapMode, PollError, PollType, WriteOnly};
+use wgpu::{CommandEncoderDescriptor, ComputePipeline, MapMode, WriteOnly};
 
-/// Bands in flight.
-const RING: usize = 3;
-
-/// A device that has not answered for this long will not: drivers reset after two seconds.
-const PATIENCE: Duration = Duration::from_secs(60);
+/// Dispatches in flight.
+pub(super) const RING: usize = 3;
 
 /// A band whose codes are not back yet.
 struct InFlight {
@@ -28,18 +26,21 @@ struct InFlight {
 
 /// A slot whose upload and download are about to be mapped again.
 pub(super) struct Mapping {
-    submission: wgpu::SubmissionIndex,
+    submission: Submission,
     mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
+    buffers: usize,
 }
 
 /// One job on a device.
 pub(super) struct Transfer<'a, O> {
     device: &'a Device,
     operation: &'a O,
-    entry_point: &'static str,
+    kernel: Kernel,
     pipeline: ComputePipeline,
     input_row_bytes: Vec<usize>,
     output_row_bytes: Vec<usize>,
+    /// Rows for which there is room at once.
+    most_rows: usize,
     flying: VecDeque<InFlight>,
 }
 
@@ -48,24 +49,63 @@ impl<'a, O: Operation> Transfer<'a, O> {
     pub fn new(device: &'a Device, operation: &'a O) -> Result<Self> {
         let kernel = operation.kernel();
         let pipeline = device.guarded(|| Ok(device.pipeline(&kernel)))?;
+        let most_rows = device.greatest_binding() / greatest_row_bytes(operation);
         Ok(Self {
             device,
             operation,
-            entry_point: kernel.source.entry_point,
+            kernel,
             pipeline,
             input_row_bytes: operation.inputs(),
             output_row_bytes: output_row_bytes(operation),
+            most_rows: most_rows.clamp(1, device.greatest_dispatch()),
             flying: VecDeque::new(),
         })
     }
 
-    /// Sends the next band of `rows` rows to the device, and hands on the codes of an earlier one if it must.
-    pub fn send(&mut self, rows: usize, layers: &[Layer<'_>], sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
-        if self.flying.len() == RING {
+    /// Sends the next band of `rows` rows to the device, and hands on the codes of earlier ones if it must.
+    ///
+    /// `layers` cuts rows out of the band: it is sent in parts where it is too much for the device at once.
+    pub fn send<'l>(
+        &mut self,
+        rows: usize,
+        layers: impl Fn(Range<usize>) -> Vec<Layer<'l>>,
+        sinks: &mut [&mut dyn CodeSink],
+    ) -> Result<()> {
+        let mut sent = 0;
+        while sent < rows {
+            if self.flying.len() == RING {
+                self.land(sinks)?;
+            }
+            let count = self.rows_at_once().min(rows - sent);
+            match self.launch(count, &layers(sent..sent + count)) {
+                Ok(flight) => {
+                    self.flying.push_back(flight);
+                    sent += count;
+                }
+                Err(Fault::OutOfMemory(error)) => self.make_room(count, error, sinks)?,
+                Err(Fault::Other(error)) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    /// Rows for which the device has room and that it computes in time.
+    fn rows_at_once(&self) -> usize {
+        let in_time = self.device.pace.most_items(&self.kernel) / self.operation.width();
+        in_time.clamp(1, self.most_rows)
+    }
+
+    /// After `rows` rows were refused for want of memory: waits until what this job and others before it have taken
+    /// is free, and takes half as much from then on.
+    fn make_room(&mut self, rows: usize, error: Error, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
+        while !self.flying.is_empty() {
             self.land(sinks)?;
         }
-        let flight = self.device.guarded(|| self.launch(rows, layers))?;
-        self.flying.push_back(flight);
+        let has_freed = self.device.free_slots();
+        if rows == 1 && !has_freed {
+            return Err(error);
+        }
+        self.most_rows = (rows / 2).max(1);
         Ok(())
     }
 
@@ -78,34 +118,37 @@ impl<'a, O: Operation> Transfer<'a, O> {
     }
 
     /// Sends a band to the device.
-    fn launch(&self, rows: usize, layers: &[Layer<'_>]) -> Result<InFlight> {
+    fn launch(&self, rows: usize, layers: &[Layer<'_>]) -> Result<InFlight, Fault> {
         let device = self.device;
         let row_bytes = [self.input_row_bytes.as_slice(), &self.output_row_bytes];
         let (places, input_words) = placed(row_bytes, rows, layers, device.fresh_nonce());
         let input_bytes = 4 * u64::from(input_words);
         let output_bytes = 4 * (u64::from(places.marks) + rows as u64);
-        let slot = device.slot(input_bytes, output_bytes);
+        let slot = device.slot(input_bytes, output_bytes)?;
+        device.attempt(|| {
+            let mut view = slot.upload.get_mapped_range_mut(..).map_err(|error| device.error(error))?;
+            write_layers(view.slice(..), layers, &places);
+            drop(view);
+            slot.upload.unmap();
+            device.queue.write_buffer(&slot.params, 0, &self.operation.params(&places));
 
-        let mut view = slot.upload.get_mapped_range_mut(..).map_err(|error| device.error(error))?;
-        write_layers(view.slice(..), layers, &places);
-        drop(view);
-        slot.upload.unmap();
-        device.queue.write_buffer(&slot.params, 0, &self.operation.params(&places));
+            let label = Some(self.kernel.source.entry_point);
+            let mut encoder = device.device.create_command_encoder(&CommandEncoderDescriptor { label });
+            encoder.copy_buffer_to_buffer(&slot.upload, 0, &slot.inputs, 0, input_bytes);
+            let bindings = device.bind(
+                slot.params.as_entire_binding(),
+                slot.inputs.as_entire_binding(),
+                slot.outputs.as_entire_binding(),
+            );
+            let width = self.operation.width();
+            dispatch(&mut encoder, &self.pipeline, &bindings, width, rows);
+            encoder.copy_buffer_to_buffer(&slot.outputs, 0, &slot.download, 0, output_bytes);
+            let work = Work { kernel: self.kernel.clone(), items: rows * width };
+            let submission = device.submit(Some(work), encoder.finish());
 
-        let mut encoder =
-            device.device.create_command_encoder(&CommandEncoderDescriptor { label: Some(self.entry_point) });
-        encoder.copy_buffer_to_buffer(&slot.upload, 0, &slot.inputs, 0, input_bytes);
-        let bindings = device.bind(
-            slot.params.as_entire_binding(),
-            slot.inputs.as_entire_binding(),
-            slot.outputs.as_entire_binding(),
-        );
-        dispatch(&mut encoder, &self.pipeline, &bindings, self.operation.width(), rows);
-        encoder.copy_buffer_to_buffer(&slot.outputs, 0, &slot.download, 0, output_bytes);
-        let submission = device.queue.submit([encoder.finish()]);
-
-        let mapping = Mapping::of(&slot, submission);
-        Ok(InFlight { slot, places, mapping })
+            let mapping = Mapping::of(&slot, submission);
+            Ok(InFlight { slot, places, mapping })
+        })
     }
 
     /// Waits for the oldest band and hands its codes on.
@@ -115,7 +158,7 @@ impl<'a, O: Operation> Transfer<'a, O> {
         let InFlight { slot, places, .. } = &flight;
         let view = device.guarded(|| {
             flight.mapping.wait(device)?;
-            slot.download.get_mapped_range(..).map_err(|error| device.error(error))
+            device.returned(slot)
         })?;
         let rows = places.rows as usize;
         let marks = &view[4 * places.marks as usize..];
@@ -143,26 +186,31 @@ impl<'a, O: Operation> Transfer<'a, O> {
 
 impl Mapping {
     /// Asks for a slot's buffers as soon as a submission is done.
-    pub fn of(slot: &Slot, submission: wgpu::SubmissionIndex) -> Self {
+    pub fn of(slot: &Slot, submission: Submission) -> Self {
+        Self::of_buffers([(&slot.upload, MapMode::Write), (&slot.download, MapMode::Read)], submission)
+    }
+
+    /// Asks for some buffers as soon as a submission is done.
+    pub fn of_buffers<'a>(
+        wanted: impl IntoIterator<Item = (&'a wgpu::Buffer, MapMode)>,
+        submission: Submission,
+    ) -> Self {
         let (report, mapped) = channel();
-        let also = report.clone();
-        slot.upload.map_async(MapMode::Write, .., move |result| drop(report.send(result)));
-        slot.download.map_async(MapMode::Read, .., move |result| drop(also.send(result)));
-        Self { submission, mapped }
+        let mut buffers = 0;
+        for (buffer, mode) in wanted {
+            let report = report.clone();
+            buffer.map_async(mode, .., move |result| drop(report.send(result)));
+            buffers += 1;
+        }
+        Self { submission, mapped, buffers }
     }
 
     /// Waits until the submission is done and the buffers are mapped.
     pub fn wait(&self, device: &Device) -> Result<()> {
-        let wait = PollType::Wait { submission_index: Some(self.submission.clone()), timeout: Some(PATIENCE) };
-        let polled = device.device.poll(wait);
-        device.check()?;
-        polled.map_err(|error| match error {
-            PollError::Timeout => device.give_up(error),
-            // Of a device that is lost without having told it yet.
-            PollError::WrongSubmissionIndex(..) => device.error(error),
-        })?;
-        for _ in 0..2 {
-            let result = self.mapped.recv_timeout(PATIENCE).map_err(|_| device.give_up("it did not answer"))?;
+        device.wait(&self.submission)?;
+        for _ in 0..self.buffers {
+            let answer = self.mapped.recv_timeout(device.patience);
+            let result = answer.map_err(|_| device.give_up("its buffers were not mapped"))?;
             result.map_err(|error| device.check().err().unwrap_or_else(|| device.error(error)))?;
         }
         Ok(())
@@ -180,13 +228,7 @@ pub(super) fn dispatch(
     let mut pass = encoder.begin_compute_pass(&Default::default());
     pass.set_pipeline(pipeline);
     pass.set_bind_group(0, bindings, &[]);
-    let [x, y] = workgroups(width, rows);
-    pass.dispatch_workgroups(x, y, 1);
-}
-
-/// Workgroups across and down `rows` rows of `width` texels.
-pub(super) fn workgroups(width: usize, rows: usize) -> [u32; 2] {
-    [width.div_ceil(TEXELS_PER_INVOCATION * WORKGROUP) as u32, rows as u32]
+    pass.dispatch_workgroups(row_groups(width) as u32, rows as u32, 1);
 }
 
 /// Where everything of a dispatch lies, with rows of so many bytes in and out, and the words of its inputs.

@@ -1,19 +1,117 @@
 //! The page of `texbake verify --html`: recordings in one file that any browser with WebGPU runs.
 
+use super::bounds;
+use super::cases::Case;
+use super::sabotage;
+use super::subject::{Options, Progress};
 use crate::backend::gpu::recording::{Expected, Given, Pass, Recording, as_base64};
+use crate::error::Result;
+use crate::io::replace::Replacement;
+use crate::stream::Monitor;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap};
+use std::io::Write;
+use std::path::Path;
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 
+/// A page that verifies the WebGPU of whatever browser opens it: one file that holds the kernels, inputs, and the
+/// specification's answers, refers to nothing else, and opens from a disk too.
+///
+/// It ends by writing two lines to the browser's console, for programs: `texbake verify: 12 cases agree, 0 differ`, and
+/// `texbake verify report: ` with a JSON object. What it compares are the kernels' outputs, before anything that the
+/// CPU does with them.
+#[derive(Debug, Clone)]
+pub struct Page {
+    html: String,
+    cases: usize,
+    values: usize,
+}
+
+impl Page {
+    /// The cases that the options mean; sabotaged, with a constant changed in each kernel.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`](crate::Error::Parameter) if the options mean no case;
+    /// [`Error::Cancelled`](crate::Error::Cancelled) if the monitor says so.
+    pub fn new(
+        options: &Options,
+        sabotaged: bool,
+        monitor: &Monitor,
+        watch: &mut dyn FnMut(Progress<'_>),
+    ) -> Result<Self> {
+        let cases = options.cases()?;
+        let mut recorded = Vec::new();
+        for (done, case) in cases.iter().enumerate() {
+            monitor.check()?;
+            watch(Progress { done, of: cases.len(), case: &case.name });
+            recorded.extend(record(case, options.seed)?);
+        }
+        if sabotaged {
+            let passes = recorded.iter_mut().flat_map(|case| &mut case.recording.passes);
+            passes.for_each(|pass| pass.text = sabotage::changed(&pass.text));
+        }
+        let mut notes = vec![("texbake", env!("CARGO_PKG_VERSION").to_owned()), ("seed", options.seed.to_string())];
+        notes.extend(options.only.clone().map(|only| ("only", only)));
+        notes.extend(sabotaged.then(|| ("sabotage", "a constant of each kernel is changed".to_owned())));
+        let values = recorded.iter().map(|case| case.recording.values()).sum();
+        Ok(Self { html: html(&notes, &recorded), cases: recorded.len(), values })
+    }
+
+    /// The page's text.
+    pub fn html(&self) -> &str {
+        &self.html
+    }
+
+    /// Cases that it runs.
+    pub fn cases(&self) -> usize {
+        self.cases
+    }
+
+    /// Values that it compares.
+    pub fn values(&self) -> usize {
+        self.values
+    }
+
+    /// Writes the page; a file of that name is replaced when the new one is complete.
+    ///
+    /// # Errors
+    /// [`Error::Io`](crate::Error::Io), [`Error::File`](crate::Error::File).
+    pub fn save(&self, path: &Path) -> Result<()> {
+        let file = Replacement::create(path)?;
+        let written = file.output()?.write_all(self.html.as_bytes());
+        // What the system said tells more than what a writer made of it.
+        file.check()?;
+        written.map_err(crate::Error::io(path))?;
+        file.commit()
+    }
+}
+
+/// A case as data; its kernels may run more than once.
+fn record(case: &Case, seed: u64) -> Result<Vec<PageCase>> {
+    let job = case.job(seed)?;
+    let recordings = Recording::of(|baker| job.run(baker))?;
+    let bound = bounds::fast(case.operation);
+    let name = |number: usize| match number {
+        0 => case.name.clone(),
+        _ => format!("{}, dispatch {}", case.name, number + 1),
+    };
+    let page_case = |(number, mut recording): (usize, Recording)| {
+        recording.allow(bound.codes, bound.ulps);
+        PageCase { name: name(number), operation: case.operation, recording }
+    };
+    Ok(recordings.into_iter().enumerate().map(page_case).collect())
+}
+
 /// A recording with a name that tells it from all others.
 #[derive(Debug, Clone)]
-pub(crate) struct PageCase {
-    /// `bake, exact, u16 heights to unorm 16 xyz gl, scharr, clamp`.
-    pub name: String,
-    pub recording: Recording,
+struct PageCase {
+    name: String,
+    /// The heading under which it is shown.
+    operation: &'static str,
+    recording: Recording,
 }
 
 /// What the page's script reads.
@@ -57,9 +155,8 @@ struct PagePass<'a> {
     groups: [u32; 2],
 }
 
-/// The page: one file without any reference to another, which opens from a disk too. `notes` are what a reader should
-/// know of it, such as version and seed: a label and a text each.
-pub(crate) fn page(notes: &[(&str, String)], cases: &[PageCase]) -> String {
+/// The page's text. `notes` are what a reader should know of it: a label and a text each.
+fn html(notes: &[(&str, String)], cases: &[PageCase]) -> String {
     let mut kernels = Kernels::default();
     let cases = cases.iter().map(|case| recorded(case, &mut kernels)).collect();
     let document = Document { notes, kernels: kernels.all, cases };
@@ -70,8 +167,8 @@ pub(crate) fn page(notes: &[(&str, String)], cases: &[PageCase]) -> String {
     TEMPLATE.replace("{{style}}", STYLE).replace("{{script}}", SCRIPT).replace("{{recordings}}", &json)
 }
 
-fn recorded<'a>(PageCase { name, recording }: &'a PageCase, kernels: &mut Kernels<'a>) -> PageRecording<'a> {
-    let Recording { operation, precision, formats, passes, inputs, output_words, given, expected } = recording;
+fn recorded<'a>(case: &'a PageCase, kernels: &mut Kernels<'a>) -> PageRecording<'a> {
+    let Recording { precision, formats, passes, inputs, output_words, given, expected } = &case.recording;
     let pass = |pass: &'a Pass| PagePass {
         kernel: kernels.index(pass),
         constants: pass.constants.iter().copied().collect(),
@@ -79,8 +176,8 @@ fn recorded<'a>(PageCase { name, recording }: &'a PageCase, kernels: &mut Kernel
         groups: pass.groups,
     };
     PageRecording {
-        name,
-        operation,
+        name: &case.name,
+        operation: case.operation,
         precision: precision.to_string(),
         formats,
         passes: passes.iter().map(pass).collect(),
@@ -110,10 +207,11 @@ impl<'a> Kernels<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::backend::gpu::recording_tests::samples;
+    use crate::backend::gpu::sources;
 
-    fn cases() -> Vec<PageCase> {
-        samples().into_iter().map(|(name, recording)| PageCase { name, recording }).collect()
+    fn page(words: &str, sabotaged: bool) -> Page {
+        let options = Options { only: Some(words.into()), ..Default::default() };
+        Page::new(&options, sabotaged, &Monitor::default(), &mut |_| ()).unwrap()
     }
 
     /// The data of a page, as a browser finds them.
@@ -123,47 +221,46 @@ mod tests {
     }
 
     #[test]
-    fn pages_hold_every_kernel_once_and_every_case() {
-        let cases = cases();
-        let notes = [("seed", "</script><script>alert(1)</script>{{style}}".to_owned())];
-        let page = page(&notes, &cases);
-        let data = data_of(&page);
-        assert_eq!(data["notes"][0][1], notes[0].1);
-        assert_eq!(data["cases"].as_array().unwrap().len(), cases.len());
+    fn pages_hold_every_case_and_every_kernel_once() {
+        let page = page("fast, random", false);
+        let data = data_of(page.html());
+        let cases = data["cases"].as_array().unwrap();
+        assert_eq!(cases.len(), page.cases());
+        assert!(cases.len() > 20 && page.values() > 20 * 800);
         let kernels = data["kernels"].as_array().unwrap();
-        for (number, pass) in cases.iter().flat_map(|case| &case.recording.passes).enumerate() {
-            let same = kernels.iter().filter(|kernel| kernel["text"] == pass.text.as_str()).count();
-            assert_eq!(same, 1, "pass {number}: {}", pass.name);
+        let names: Vec<_> = kernels.iter().map(|kernel| kernel["name"].as_str().unwrap()).collect();
+        assert_eq!(names, ["bake, fast", "parallax, fast", "blend, fast"]);
+        for kernel in kernels {
+            let source = sources().iter().find(|source| kernel["name"] == source.name).unwrap();
+            assert_eq!(kernel["text"], source.text());
         }
+    }
+
+    #[test]
+    fn notes_end_no_script() {
+        let notes = [("seed", "</script><script>alert(1)</script>{{style}}".to_owned())];
+        let page = html(&notes, &[]);
+        assert_eq!(data_of(&page)["notes"][0][1], notes[0].1);
+        assert_eq!(page.matches("</script").count(), 2);
     }
 
     #[test]
     fn pages_need_nothing_else() {
-        let page = page(&[], &cases()[..1]);
-        for reference in ["src=", "href=", "url(", "@import", "http:", "https:/", "fetch("] {
+        let page = html(&[], &[]);
+        for reference in ["src=", "href=", "url(", "@import", "http:", "https:/", "fetch(", "import("] {
             assert!(!page.contains(reference), "the page refers to something by {reference}");
         }
-        assert_eq!(page.matches("</script").count(), 2);
         assert!(!page.contains("{{"), "a place of the template is left");
     }
 
-    /// For the eye and a browser: TEXBAKE_PAGE names the file.
     #[test]
-    fn write_a_page() {
-        let Some(file) = std::env::var_os("TEXBAKE_PAGE") else { return };
-        let mut cases = cases();
-        match std::env::var("TEXBAKE_PAGE_KIND").as_deref() {
-            Ok("empty") => cases.clear(),
-            Ok("sabotaged") => {
-                for pass in cases.iter_mut().step_by(3).flat_map(|case| &mut case.recording.passes) {
-                    pass.text = pass.text.replace("const TEXELS: u32 = 4u;", "const TEXELS: u32 = 3u;");
-                }
-                cases[4].recording.expected[0].bytes[41] ^= 1;
-                cases[5].recording.passes[0].text += "\nfn broken() { let x = ; }";
-            }
-            _ => {}
+    fn sabotage_changes_every_kernel() {
+        let words = "exact, u8, unorm 8 xyz gl, central";
+        let [data, sabotaged] = [false, true].map(|sabotaged| data_of(page(words, sabotaged).html()));
+        assert_eq!(data["cases"], sabotaged["cases"]);
+        assert!(!data["kernels"].as_array().unwrap().is_empty());
+        for (kernel, changed) in data["kernels"].as_array().iter().zip(sabotaged["kernels"].as_array()) {
+            assert_ne!(kernel, &changed);
         }
-        let notes = [("texbake", env!("CARGO_PKG_VERSION").to_owned()), ("seed", "5".to_owned())];
-        std::fs::write(file, page(&notes, &cases)).unwrap();
     }
 }

@@ -1,9 +1,7 @@
 //! An interrupt ends a run cleanly.
 
-#![cfg(unix)]
-
-use super::support::{Folder, Run, read_png};
-use super::tangents::{Model, sheet};
+use crate::cli::support::{Folder, Run, read_png};
+use crate::cli::tangents::{Model, sheet};
 use std::process::{Command, Output, Stdio};
 
 /// So many that no machine is done before the signal comes.

@@ -1,0 +1,255 @@
+//! `texbake verify`: proof that the devices of this machine compute what they should.
+
+use super::exit::{Exit, Failure};
+use super::interruptible;
+use super::print::{comparison_table, put, say};
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::{Path, PathBuf};
+use texbake::batch::JsonFile;
+use texbake::stream::Monitor;
+#[cfg(feature = "gpu")]
+use texbake::verify::Page;
+use texbake::verify::{DeviceReport, Mismatch, Options, Progress, Report, Subject};
+use texbake::{Error, Result};
+
+/// Prove that every device of this machine computes what it should, kernel by kernel
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Runs every kernel, in every precision, format, edge mode and encoding, on
+random, small, extreme and boundary inputs, on every adapter and on the
+vectorised CPU, and compares each answer with the specification: plain scalar
+code on the CPU. Codes of the specification, in turn, are judged by the
+formulas in whole numbers of any size. In exact precision every bit must
+agree. In fast precision the errors are measured, in codes, in units in the
+last place of 1 (ulp: 2^-23 of 32f, 2^-10 of 16f), and in degrees, and must
+stay within the documented bounds.
+
+Of a difference the smallest input that shows it is searched and printed, with
+its bits, what each says of it, and the command that repeats it.
+
+With --sabotage a constant of each kernel is changed first: then every
+comparison must fail, or verify would prove nothing.
+
+The page of --html runs the same kernels by the WebGPU of the browser that
+opens it, and compares them with answers that it contains.
+
+Examples:
+  texbake verify
+  texbake verify --adapter llvmpipe --full --json report.json
+  texbake verify --only \"normal map, exact, u16\"
+  texbake verify --html verify.html
+
+Exit status: 0 all agree, 1 something differs or could not be verified,
+2 wrong arguments, 130 interrupted.")]
+pub struct VerifyArguments {
+    /// Only this adapter: its description contains NAME, as in `texbake devices`; vulkan:NAME names the API too
+    #[arg(long, value_name = "NAME", conflicts_with = "backend")]
+    pub adapter: Option<String>,
+
+    /// Only the CPU, or only GPUs [default: both]
+    #[arg(long, value_enum)]
+    pub backend: Option<Backend>,
+
+    /// Every mix of options, not only every option: minutes on a GPU, longer in software
+    #[arg(long)]
+    pub full: bool,
+
+    /// What all inputs are made from
+    #[arg(long, value_name = "NUMBER", default_value_t = Options::default().seed)]
+    pub seed: u64,
+
+    /// Only cases that have all these words, with commas between them
+    #[arg(long, value_name = "WORDS")]
+    pub only: Option<String>,
+
+    /// Change a constant of each kernel first, to see that it is noticed
+    #[arg(long)]
+    pub sabotage: bool,
+
+    /// Write what was found as JSON
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+
+    /// Write a page that verifies the browser which opens it, instead of verifying this machine
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["adapter", "backend", "json"])]
+    pub html: Option<PathBuf>,
+
+    /// Print failures only
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// What is verified.
+#[derive(ValueEnum, Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Backend {
+    Cpu,
+    Gpu,
+}
+
+pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Failure> {
+    let monitor = interruptible();
+    let options = Options { seed: arguments.seed, full: arguments.full, only: arguments.only.clone() };
+    if let Some(path) = &arguments.html {
+        return write_page(path, arguments, &options, &monitor);
+    }
+    let file = arguments.json.as_deref().map(|path| JsonFile::create("report", path, &[], None)).transpose()?;
+    let mut report = Report::new(&options, arguments.sabotage);
+    for subject in subjects(arguments)? {
+        match examine(subject, arguments, &options, &monitor) {
+            Ok(device) => {
+                if !arguments.quiet || !device.passed() {
+                    show(&device);
+                }
+                report.devices.push(device);
+            }
+            Err(Error::Cancelled) => {
+                say("interrupted: what is above was verified");
+                return Ok(Exit::Interrupted);
+            }
+            Err(error) => return Err(error.into()),
+        }
+    }
+    if let Some(file) = file {
+        file.write(&report)?;
+    }
+    if !arguments.quiet {
+        put(summary(&report));
+    }
+    Ok(if report.passed() { Exit::Success } else { Exit::Failed })
+}
+
+/// What the arguments mean; an adapter that does not open is a finding, unless it was named.
+fn subjects(arguments: &VerifyArguments) -> Result<Vec<Result<Subject>>, Failure> {
+    if let Some(name) = &arguments.adapter {
+        return Ok(vec![Ok(adapter(name)?)]);
+    }
+    let mut subjects = Vec::new();
+    if arguments.backend != Some(Backend::Gpu) {
+        subjects.push(Ok(Subject::cpu()));
+    }
+    if arguments.backend != Some(Backend::Cpu) {
+        subjects.extend(adapters());
+    }
+    if subjects.is_empty() {
+        return Err(Failure::Failed("this machine has no adapter that runs compute kernels".into()));
+    }
+    Ok(subjects)
+}
+
+#[cfg(feature = "gpu")]
+fn adapter(name: &str) -> Result<Subject> {
+    Subject::adapter(Some(name))
+}
+
+#[cfg(feature = "gpu")]
+fn adapters() -> Vec<Result<Subject>> {
+    Subject::adapters()
+}
+
+#[cfg(not(feature = "gpu"))]
+fn adapter(name: &str) -> Result<Subject> {
+    let (adapter, reason) = (name.into(), "this build has no gpu feature; use --backend cpu".into());
+    Err(Error::Device { adapter, reason })
+}
+
+#[cfg(not(feature = "gpu"))]
+fn adapters() -> Vec<Result<Subject>> {
+    Vec::new()
+}
+
+#[cfg(feature = "gpu")]
+fn write_page(path: &Path, arguments: &VerifyArguments, options: &Options, monitor: &Monitor) -> Result<Exit, Failure> {
+    let bar = bar(arguments.quiet);
+    let page = Page::new(options, arguments.sabotage, monitor, &mut |progress| advance(&bar, "page", progress));
+    bar.finish_and_clear();
+    let page = match page {
+        Err(Error::Cancelled) => {
+            say("interrupted: no page was written");
+            return Ok(Exit::Interrupted);
+        }
+        page => page?,
+    };
+    page.save(path)?;
+    if !arguments.quiet {
+        let (cases, values) = (page.cases(), page.values());
+        put(format_args!("{}: {cases} cases, {values} values; open it in a browser with WebGPU", path.display()));
+    }
+    Ok(Exit::Success)
+}
+
+#[cfg(not(feature = "gpu"))]
+fn write_page(_: &Path, _: &VerifyArguments, _: &Options, _: &Monitor) -> Result<Exit, Failure> {
+    Err(Failure::Failed("--html needs the kernels: this build has no gpu feature".into()))
+}
+
+/// Hidden where stderr is no terminal.
+fn bar(is_quiet: bool) -> ProgressBar {
+    let bar = if is_quiet { ProgressBar::hidden() } else { ProgressBar::new(0) };
+    bar.set_style(ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}").unwrap_or(ProgressStyle::default_bar()));
+    bar
+}
+
+fn advance(bar: &ProgressBar, name: &str, progress: Progress<'_>) {
+    bar.set_length(progress.of as u64);
+    bar.set_position(progress.done as u64);
+    bar.set_message(format!("{name}: {}", progress.case));
+}
+
+/// Verifies a device while a bar moves.
+fn examine(
+    subject: Result<Subject>,
+    arguments: &VerifyArguments,
+    options: &Options,
+    monitor: &Monitor,
+) -> Result<DeviceReport> {
+    let subject = match subject {
+        Ok(subject) if arguments.sabotage => subject.sabotaged(),
+        Ok(subject) => subject,
+        Err(Error::Device { adapter, reason }) => return Ok(DeviceReport::failed(adapter, reason)),
+        Err(error) => return Err(error),
+    };
+    let bar = bar(arguments.quiet);
+    let name = subject.name();
+    let report = subject.verify(options, monitor, &mut |progress| advance(&bar, &name, progress));
+    bar.finish_and_clear();
+    report
+}
+
+fn show(device: &DeviceReport) {
+    put(format_args!("{}", device.device));
+    if !device.comparisons.is_empty() {
+        put(comparison_table(&device.comparisons));
+    }
+    if let Some(failure) = &device.failure {
+        put(format_args!("  FAILED: {failure}"));
+    }
+    for comparison in &device.comparisons {
+        comparison.mismatch.iter().for_each(show_mismatch);
+    }
+    put("");
+}
+
+fn show_mismatch(mismatch: &Mismatch) {
+    put(format_args!("\n  {}", mismatch.case));
+    put(format_args!("  the smallest input that was found, {}", mismatch.input.replace('\n', "\n  ")));
+    put(format_args!("  at {}", mismatch.place));
+    put(format_args!("    the device says         {}", mismatch.device));
+    put(format_args!("    the CPU                 {}", mismatch.cpu));
+    put(format_args!("    the specification       {}", mismatch.specification));
+    if let Some(oracle) = &mismatch.oracle {
+        put(format_args!("    in whole numbers        {oracle}"));
+    }
+    put(format_args!("  again: {}", mismatch.command));
+}
+
+fn summary(report: &Report) -> String {
+    let failed = report.devices.iter().filter(|device| !device.passed()).count();
+    let devices = report.devices.len();
+    let found = match failed {
+        0 => format!("all {devices} devices agree"),
+        _ => format!("{failed} of {devices} devices FAILED"),
+    };
+    let sabotage = if report.sabotaged { ", sabotaged" } else { "" };
+    format!("texbake {}, seed {}{sabotage}: {found}", report.version, report.seed)
+}

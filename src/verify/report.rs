@@ -1,0 +1,103 @@
+//! What was found.
+
+use super::agreement::{Agreement, Bound};
+use super::subject::Options;
+use serde::Serialize;
+
+/// What verification found, on each device.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// The version of texbake.
+    pub version: &'static str,
+    /// What all inputs were made from.
+    pub seed: u64,
+    /// Whether every mix of options was verified, and not only every option.
+    pub full: bool,
+    /// Whether kernels were changed first, to see that it is noticed.
+    pub sabotaged: bool,
+    /// Each device.
+    pub devices: Vec<DeviceReport>,
+}
+
+/// What was found on one device.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DeviceReport {
+    /// Its name, as [`crate::Baker::name`] gives it, or what was asked for.
+    pub device: String,
+    /// Each operation in each precision.
+    pub comparisons: Vec<Comparison>,
+    /// Why the device could not be verified, or not to the end.
+    pub failure: Option<String>,
+}
+
+/// What was found of one operation in one precision.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparison {
+    /// What was computed.
+    pub operation: &'static str,
+    /// `exact`: every bit must agree; `fast`: all within the bound.
+    pub precision: String,
+    /// Jobs that ran.
+    pub cases: u64,
+    /// Jobs with a difference, of `fast` one beyond the bound.
+    pub failed_cases: u64,
+    /// How the answers agree with the specification's.
+    pub agreement: Agreement,
+    /// The documented bound of `fast`.
+    pub bound: Option<Bound>,
+    /// The first failure, shrunk.
+    pub mismatch: Option<Mismatch>,
+}
+
+/// The smallest input that fails, and what each says of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Mismatch {
+    /// The case in which it was found.
+    pub case: String,
+    /// The input in full.
+    pub input: String,
+    /// Where the answers differ: `normal, column 3, row 0, x`.
+    pub place: String,
+    /// The device's answer, with its bits.
+    pub device: String,
+    /// The answer of the vectorised CPU.
+    pub cpu: String,
+    /// The answer of the specification, which is plain scalar code.
+    pub specification: String,
+    /// The formula in whole numbers of any size, where they can say it.
+    pub oracle: Option<String>,
+    /// What repeats the case.
+    pub command: String,
+}
+
+impl Report {
+    /// Of no device yet.
+    pub fn new(options: &Options, sabotaged: bool) -> Self {
+        let (seed, full) = (options.seed, options.full);
+        Self { version: env!("CARGO_PKG_VERSION"), seed, full, sabotaged, devices: Vec::new() }
+    }
+
+    /// Whether there is a device, and every device has passed.
+    pub fn passed(&self) -> bool {
+        !self.devices.is_empty() && self.devices.iter().all(DeviceReport::passed)
+    }
+}
+
+impl DeviceReport {
+    /// Of a device that could not be opened.
+    pub fn failed(device: String, reason: String) -> Self {
+        Self { device, comparisons: Vec::new(), failure: Some(reason) }
+    }
+
+    /// Whether all of it was verified, and nothing differs.
+    pub fn passed(&self) -> bool {
+        self.failure.is_none() && !self.comparisons.is_empty() && self.comparisons.iter().all(Comparison::passed)
+    }
+}
+
+impl Comparison {
+    /// Whether values were compared, and no case failed.
+    pub fn passed(&self) -> bool {
+        self.agreement.values > 0 && self.failed_cases == 0
+    }
+}

@@ -1,0 +1,249 @@
+//! What is verified, and how.
+
+use super::agreement::{Agreement, Difference, compare};
+use super::answer::Answer;
+use super::bounds;
+use super::cases::{Case, Extent, cases};
+use super::job::Job;
+use super::mismatch;
+use super::report::{Comparison, DeviceReport};
+use super::sabotage;
+use crate::backend::cpu::Cpu;
+#[cfg(feature = "gpu")]
+use crate::backend::{Backend, gpu::Untested};
+use crate::baker::Baker;
+use crate::error::{Error, Result};
+use crate::ops::Precision;
+use crate::stream::Monitor;
+use std::sync::Arc;
+
+/// What is verified.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Options {
+    /// What all inputs are made from.
+    pub seed: u64,
+    /// Every mix of options instead of every option: minutes instead of seconds on a GPU.
+    pub full: bool,
+    /// Only cases that have all these words: `normal map, u16, wrap`.
+    pub only: Option<String>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { seed: 1, full: false, only: None }
+    }
+}
+
+impl Options {
+    /// The cases that these options mean.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there is none.
+    pub(crate) fn cases(&self) -> Result<Vec<Case>> {
+        let mut cases = cases(if self.full { Extent::Full } else { Extent::Quick });
+        if let Some(only) = &self.only {
+            let wanted: Vec<&str> = only.split(',').map(str::trim).collect();
+            cases.retain(|case| wanted.iter().all(|word| case.name.split(", ").any(|part| part == *word)));
+            if cases.is_empty() {
+                let range = "words of a case's name with commas between them, as normal map, exact, u16, wrap";
+                return Err(Error::parameter("only", only, range));
+            }
+        }
+        Ok(cases)
+    }
+}
+
+/// How far verification of a device has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Progress<'a> {
+    /// Cases that are done.
+    pub done: usize,
+    /// Cases in all.
+    pub of: usize,
+    /// The next case.
+    pub case: &'a str,
+}
+
+/// A backend and its device, to be verified.
+pub struct Subject {
+    baker: Baker,
+    #[cfg(feature = "gpu")]
+    gpu: Option<Arc<Untested>>,
+    sabotaged: bool,
+}
+
+impl Subject {
+    /// The vectorised CPU.
+    pub fn cpu() -> Self {
+        Self {
+            baker: Baker::cpu(),
+            #[cfg(feature = "gpu")]
+            gpu: None,
+            sabotaged: false,
+        }
+    }
+
+    /// The adapter that `selector` means, as for [`Baker::gpu`], or the best one; its kernels are not tested before.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if there is none, or it does not open.
+    #[cfg(feature = "gpu")]
+    pub fn adapter(selector: Option<&str>) -> Result<Self> {
+        Ok(Self::on(Untested::open(selector)?))
+    }
+
+    /// Every adapter of this machine, or why it does not open.
+    #[cfg(feature = "gpu")]
+    pub fn adapters() -> Vec<Result<Self>> {
+        Untested::all().into_iter().map(|gpu| Ok(Self::on(gpu?))).collect()
+    }
+
+    #[cfg(feature = "gpu")]
+    fn on(gpu: Untested) -> Self {
+        let gpu = Arc::new(gpu);
+        Self { baker: Baker::on(gpu.clone()), gpu: Some(gpu), sabotaged: false }
+    }
+
+    /// The same with a constant changed in each kernel: every comparison must fail, or verification proves nothing.
+    #[must_use]
+    pub fn sabotaged(mut self) -> Self {
+        self.sabotaged = true;
+        #[cfg(feature = "gpu")]
+        if let Some(gpu) = &self.gpu {
+            gpu.replace_kernels(sabotage::changed);
+            return self;
+        }
+        self.baker = Baker::on(Arc::new(sabotage::Changed(Cpu::shared())));
+        self
+    }
+
+    /// The backend and its device.
+    pub fn name(&self) -> String {
+        self.baker.name()
+    }
+
+    pub(super) fn baker(&self) -> &Baker {
+        &self.baker
+    }
+
+    fn is_cpu(&self) -> bool {
+        self.adapter_name().is_none()
+    }
+
+    pub(super) fn is_sabotaged(&self) -> bool {
+        self.sabotaged
+    }
+
+    /// The GPU, if it is one.
+    #[cfg(feature = "gpu")]
+    pub(super) fn gpu(&self) -> Option<&Untested> {
+        self.gpu.as_deref()
+    }
+
+    /// The adapter's name; `None` for the CPU.
+    pub(super) fn adapter_name(&self) -> Option<String> {
+        #[cfg(feature = "gpu")]
+        return self.gpu.as_ref().map(|gpu| gpu.device());
+        #[cfg(not(feature = "gpu"))]
+        None
+    }
+
+    /// Runs every case that the options mean and compares each answer with the specification's.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if the options mean no case; [`Error::Cancelled`] if the monitor says so. What the device
+    /// does wrong is no error, but in the report.
+    pub fn verify(
+        &self,
+        options: &Options,
+        monitor: &Monitor,
+        watch: &mut dyn FnMut(Progress<'_>),
+    ) -> Result<DeviceReport> {
+        let cases = options.cases()?;
+        let mut report = DeviceReport { device: self.name(), comparisons: Vec::new(), failure: None };
+        for (done, case) in cases.iter().enumerate() {
+            monitor.check()?;
+            watch(Progress { done, of: cases.len(), case: &case.name });
+            let job = case.job(options.seed)?;
+            match self.check(&job, case.operation) {
+                Ok(checked) => self.count(&mut report.comparisons, case, &job, checked, options),
+                Err(error) => {
+                    report.failure = Some(format!("{}: {error}", case.name));
+                    break;
+                }
+            }
+        }
+        Ok(report)
+    }
+
+    /// Runs one job here and by the specification.
+    fn check(&self, job: &Job, operation: &str) -> Result<(Agreement, Option<Difference>)> {
+        let expected = job.with_precision(Precision::Exact).run(&Baker::reference())?;
+        let got = job.run(&self.baker)?;
+        let bound = job.is_fast().then(|| bounds::fast(operation));
+        let (mut agreement, difference) = compare(&expected, &got, bound.as_ref());
+        // Once is enough: every device is compared with the specification.
+        let misjudged = if self.is_cpu() { judge(job, &expected, &mut agreement.judged) } else { None };
+        Ok((agreement, difference.or(misjudged)))
+    }
+
+    /// Counts a case that ran.
+    fn count(
+        &self,
+        comparisons: &mut Vec<Comparison>,
+        case: &Case,
+        job: &Job,
+        (agreement, difference): (Agreement, Option<Difference>),
+        options: &Options,
+    ) {
+        let precision = case.precision.to_string();
+        let is_it = |it: &Comparison| it.operation == case.operation && it.precision == precision;
+        let at = comparisons.iter().position(is_it).unwrap_or_else(|| {
+            comparisons.push(Comparison {
+                operation: case.operation,
+                precision: precision.clone(),
+                cases: 0,
+                failed_cases: 0,
+                agreement: Agreement::default(),
+                bound: (case.precision == Precision::Fast).then(|| bounds::fast(case.operation)),
+                mismatch: None,
+            });
+            comparisons.len() - 1
+        });
+        let comparison = &mut comparisons[at];
+        comparison.cases += 1;
+        comparison.agreement.merge(&agreement);
+        if let Some(difference) = difference {
+            comparison.failed_cases += 1;
+            if comparison.mismatch.is_none() {
+                let check = |job: &Job| self.check(job, case.operation).ok().and_then(|(_, difference)| difference);
+                let found = mismatch::smallest(job.clone(), difference, check);
+                comparison.mismatch = Some(found.describe(self, case, options));
+            }
+        }
+    }
+}
+
+/// Of each map as many codes are judged, spread over it.
+const JUDGED: usize = 24;
+
+/// Holds codes of the specification against the formula in whole numbers, where they are promised to be correctly
+/// rounded; gives the first that is not.
+fn judge(job: &Job, expected: &[Answer], judged: &mut u64) -> Option<Difference> {
+    if job.is_fast() || !job.is_correctly_rounded() {
+        return None;
+    }
+    let mut first = None;
+    for (map, answer) in expected.iter().enumerate() {
+        // An odd step takes every channel in turn, and more than the first column.
+        let step = (answer.len() / JUDGED) | 1;
+        for index in (0..answer.len()).step_by(step) {
+            let Some(code) = job.real(map, index).and_then(|real| real.code(answer.format)) else { continue };
+            *judged += 1;
+            if code != answer.bits(index) {
+                first = first.or(Some(Difference { map, index }));
+            }
+        }
+    }
+    first
+}

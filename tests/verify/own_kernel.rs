@@ -1,0 +1,130 @@
+//! Somebody else's kernel and its twin.
+
+use crate::support::{Random, every_baker};
+use texbake::verify::{Binding, OwnKernel, Subject, Tolerance, Work};
+
+const SQUARES: OwnKernel<'static> = OwnKernel {
+    wgsl: "
+override SHIFT: u32 = 0u;
+@group(0) @binding(0) var<uniform> count: vec4<u32>;
+@group(0) @binding(1) var<storage, read> a: array<u32>;
+@group(0) @binding(2) var<storage, read_write> squares: array<u32>;
+@compute @workgroup_size(64)
+fn square(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (id.x < count.x) {
+        squares[id.x] = (a[id.x] * a[id.x]) >> SHIFT;
+    }
+}",
+    entry_point: "square",
+    constants: &[("SHIFT", 3.0)],
+    bindings: &[Binding::Uniform, Binding::Read, Binding::ReadWrite],
+};
+
+const POISON: u32 = 0xdead_beef;
+
+/// Some random words below 2^16.
+fn work(count: usize) -> Work {
+    let mut random = Random::new(7);
+    let words = (0..count).map(|_| random.below(1 << 16) as u32).collect();
+    let buffers = vec![vec![count as u32, 0, 0, 0], words, vec![POISON; count]];
+    Work { buffers, workgroups: [count.div_ceil(64) as u32, 1, 1] }
+}
+
+fn squares(work: &Work) -> Vec<Vec<u32>> {
+    vec![work.buffers[1].iter().map(|a| a.wrapping_mul(*a) >> 3).collect()]
+}
+
+fn gpus() -> Vec<Subject> {
+    let names = every_baker().iter().map(|subject| subject.name).filter(|name| name.contains(':'));
+    names.map(|name| Subject::adapter(Some(name)).unwrap()).collect()
+}
+
+#[test]
+fn a_kernel_and_its_twin_agree() {
+    for gpu in gpus() {
+        let comparison = gpu.compare(&SQUARES, &squares, &work(1000), Tolerance::Bits).unwrap();
+        assert!(comparison.passed());
+        assert_eq!((comparison.values, comparison.differing, comparison.mismatch), (1000, 0, None));
+    }
+}
+
+#[test]
+fn a_wrong_twin_is_shown_by_the_simplest_words() {
+    // Wrong from 40000 on alone.
+    let wrong = |work: &Work| {
+        let mut answer = squares(work);
+        answer[0].iter_mut().zip(&work.buffers[1]).for_each(|(square, a)| *square ^= u32::from(*a >= 40_000));
+        answer
+    };
+    for gpu in gpus() {
+        let work = work(1000);
+        let comparison = gpu.compare(&SQUARES, &wrong, &work, Tolerance::Bits).unwrap();
+        let wrong_words = work.buffers[1].iter().filter(|word| **word >= 40_000).count();
+        assert_eq!(comparison.differing as usize, wrong_words);
+        let mismatch = comparison.mismatch.unwrap();
+        let words: Vec<u32> = mismatch.buffers[1].iter().copied().filter(|word| *word != 0).collect();
+        assert_eq!(words, [40_000]);
+        assert_eq!(mismatch.buffers[1][mismatch.word], 40_000);
+        assert_eq!((mismatch.binding, mismatch.kernel, mismatch.twin), (2, 200_000_000, 200_000_001));
+    }
+}
+
+#[test]
+fn a_word_that_is_not_written_is_a_difference() {
+    for gpu in gpus() {
+        let short = Work { workgroups: [1, 1, 1], ..work(100) };
+        let comparison = gpu.compare(&SQUARES, &squares, &short, Tolerance::Bits).unwrap();
+        assert_eq!(comparison.differing, 36);
+        assert_eq!(comparison.mismatch.unwrap().kernel, POISON);
+    }
+}
+
+#[test]
+fn floats_may_be_neighbours() {
+    let kernel = OwnKernel {
+        wgsl: "
+@group(0) @binding(0) var<storage, read> a: array<u32>;
+@group(0) @binding(1) var<storage, read_write> next: array<u32>;
+@compute @workgroup_size(1)
+fn step(@builtin(global_invocation_id) id: vec3<u32>) { next[id.x] = a[id.x] + 2u; }",
+        entry_point: "step",
+        constants: &[],
+        bindings: &[Binding::Read, Binding::ReadWrite],
+    };
+    let words = vec![1f32.to_bits(), 2.5f32.to_bits()];
+    let work = Work { buffers: vec![words.clone(), vec![POISON; 2]], workgroups: [2, 1, 1] };
+    let twin = |work: &Work| vec![work.buffers[0].clone()];
+    for gpu in gpus() {
+        let of = |tolerance| gpu.compare(&kernel, &twin, &work, tolerance).unwrap();
+        assert_eq!((of(Tolerance::Floats(2)).passed(), of(Tolerance::Floats(2)).largest), (true, 2));
+        assert!(!of(Tolerance::Floats(1)).passed() && !of(Tolerance::Bits).passed());
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_an_error() {
+    for gpu in gpus() {
+        let compare = |kernel, twin, work| gpu.compare(kernel, twin, work, Tolerance::Bits).unwrap_err().to_string();
+        let work = work(10);
+        let fewer = Work { buffers: work.buffers[..2].to_vec(), ..work.clone() };
+        assert_eq!(compare(&SQUARES, &squares, &fewer), "buffers is 2: it must be 3, one for each binding");
+        let short = |_: &Work| vec![vec![0; 9]];
+        let error = compare(&SQUARES, &short, &work);
+        assert!(error.contains("lengths of the twin's buffers is [9]: it must be [10]"), "{error}");
+        let error = compare(&OwnKernel { wgsl: "fn square( {", ..SQUARES }, &squares, &work);
+        assert!(error.starts_with(&gpu.name()["gpu, ".len()..]) && error.contains("expected"), "{error}");
+        let error = compare(&OwnKernel { entry_point: "cube", ..SQUARES }, &squares, &work);
+        assert!(error.contains("cube"), "{error}");
+        let swapped = [Binding::Read, Binding::Read, Binding::ReadWrite];
+        let error = compare(&OwnKernel { bindings: &swapped, ..SQUARES }, &squares, &work);
+        assert!(error.to_lowercase().contains("uniform"), "{error}");
+        // The device is none the worse for it.
+        assert!(gpu.compare(&SQUARES, &squares, &work, Tolerance::Bits).unwrap().passed());
+    }
+}
+
+#[test]
+fn the_cpu_runs_no_kernel() {
+    let error = Subject::cpu().compare(&SQUARES, &squares, &work(10), Tolerance::Bits).unwrap_err().to_string();
+    assert!(error.ends_with("it runs no WGSL; compare on an adapter"), "{error}");
+}
