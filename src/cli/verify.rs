@@ -59,7 +59,7 @@ pub struct VerifyArguments {
     #[arg(long, value_name = "NUMBER", default_value_t = Options::default().seed)]
     pub seed: u64,
 
-    /// Only cases that have all these words, with commas between them
+    /// Only cases that have all these words, with commas between them; a|b is either
     #[arg(long, value_name = "WORDS")]
     pub only: Option<String>,
 
@@ -246,9 +246,10 @@ fn show_mismatch(mismatch: &Mismatch) {
 fn summary(report: &Report) -> String {
     let failed = report.devices.iter().filter(|device| !device.passed()).count();
     let devices = report.devices.len();
-    let found = match failed {
-        0 => format!("all {devices} devices agree"),
-        _ => format!("{failed} of {devices} devices FAILED"),
+    let found = match (failed, devices) {
+        (0, 1) => "the device agrees in everything".to_owned(),
+        (0, _) => format!("all {devices} devices agree in everything"),
+        _ => format!("{failed} of {devices} FAILED"),
     };
     let sabotage = if report.sabotaged { ", sabotaged" } else { "" };
     format!("texbake {}, seed {}{sabotage}: {found}", report.version, report.seed)
