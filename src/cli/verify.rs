@@ -32,7 +32,8 @@ With --sabotage a constant of each kernel is changed first: then every
 comparison must fail, or verify would prove nothing.
 
 The page of --html runs the same kernels by the WebGPU of the browser that
-opens it, and compares them with answers that it contains.
+opens it, and compares them with answers that it contains. It has as many of
+the cases as give every choice that there is; all of them with --full.
 
 Examples:
   texbake verify

@@ -76,8 +76,8 @@ pub(crate) struct Expected {
     pub name: &'static str,
     #[serde(flatten)]
     pub rows: RowsOf,
-    /// How far from `bytes` a code may be.
-    pub tolerance: Tolerance,
+    /// How far from `bytes` a code may be; `None`: every bit must agree.
+    pub tolerance: Option<Tolerance>,
     /// The reference's codes, row after row without padding.
     #[serde(serialize_with = "as_base64")]
     pub bytes: Vec<u8>,
@@ -112,16 +112,15 @@ pub(crate) enum CodeType {
     Bits,
 }
 
-/// How far an answer may be from the expected one.
+/// How far `fast` may be from the expected answer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Tolerance {
-    /// The same bits.
-    None,
-    /// Steps from one code to the next.
-    Codes(f64),
-    /// The absolute difference of two floats.
-    Difference(f64),
+pub(crate) struct Tolerance {
+    /// Integer codes, in steps from one to the next.
+    pub codes: f64,
+    /// Floats, in units in the last place of 1: 2^-10 of 16f, 2^-23 of 32f.
+    pub ulps: f64,
+    /// Directions of three components in 32f.
+    pub degrees: f64,
 }
 
 /// What marks the rows and tangents of a recording. Below 2^31, as tangents want it; no poison of one repeated byte.
@@ -246,15 +245,11 @@ impl Recording {
         Ok(std::mem::take(&mut *lock(&recorder.0)))
     }
 
-    /// Lets `fast` codes differ by this many, and floats by this many units in the last place of 1. Bits stay bits.
-    pub fn allow(&mut self, codes: f64, ulps: f64) {
-        for expected in self.expected.iter_mut().filter(|_| self.precision == Precision::Fast) {
-            expected.tolerance = match expected.rows.code {
-                CodeType::Bits => Tolerance::None,
-                CodeType::F16 => Tolerance::Difference(ulps / 1024.0),
-                CodeType::F32 => Tolerance::Difference(ulps / 8_388_608.0),
-                CodeType::U8 | CodeType::I8 | CodeType::U16 | CodeType::I16 => Tolerance::Codes(codes),
-            };
+    /// Lets what `fast` computes differ; marks and signs do not.
+    pub fn allow(&mut self, tolerance: Tolerance) {
+        let is_fast = self.precision == Precision::Fast;
+        for expected in self.expected.iter_mut().filter(|it| is_fast && it.rows.code != CodeType::Bits) {
+            expected.tolerance = Some(tolerance);
         }
     }
 
@@ -331,12 +326,12 @@ impl Recording {
         let mut expected: Vec<Expected> = maps
             .map(|(((codes, format), &at), name)| {
                 let rows = RowsOf::texels(at, height, width, CodeType::of(format), format.channels);
-                Expected { name, rows, tolerance: Tolerance::None, bytes: codes.as_ref().bytes().to_vec() }
+                Expected { name, rows, tolerance: None, bytes: codes.as_ref().bytes().to_vec() }
             })
             .collect();
         let marks = RowsOf::words(places.marks as usize, 1, height, 1, CodeType::Bits);
         let bytes = NONCE.to_le_bytes().repeat(height);
-        expected.push(Expected { name: "marks", rows: marks, tolerance: Tolerance::None, bytes });
+        expected.push(Expected { name: "marks", rows: marks, tolerance: None, bytes });
 
         let kernel = operation.kernel();
         let this = Self {
@@ -368,11 +363,11 @@ impl Recording {
         let place = params.tangents as usize;
         let rows = RowsOf::words(place, 4, fans.len(), 3, CodeType::F32);
         let bytes = answer.iter().flat_map(|[x, y, z, _]| [x, y, z]).flat_map(|part| part.to_le_bytes()).collect();
-        let directions = Expected { name: "tangents", rows, tolerance: Tolerance::None, bytes };
+        let directions = Expected { name: "tangents", rows, tolerance: None, bytes };
         let rows = RowsOf::words(place + 3, 4, fans.len(), 1, CodeType::Bits);
         let proofs = answer.iter().map(|[.., w]| NONCE | if *w < 0.0 { NEGATIVE } else { 0 });
         let bytes = proofs.flat_map(u32::to_le_bytes).collect();
-        let signs = Expected { name: "signs", rows, tolerance: Tolerance::None, bytes };
+        let signs = Expected { name: "signs", rows, tolerance: None, bytes };
         let normals = RowsOf::words(params.normals as usize, 3, fans.len(), 3, CodeType::F32);
         Self {
             precision: plan.precision,

@@ -4,12 +4,12 @@ use super::bounds;
 use super::cases::Case;
 use super::sabotage;
 use super::subject::{Options, Progress};
-use crate::backend::gpu::recording::{Expected, Given, Pass, Recording, as_base64};
+use crate::backend::gpu::recording::{Expected, Given, Pass, Recording, Tolerance, as_base64};
 use crate::error::Result;
 use crate::io::replace::Replacement;
 use crate::stream::Monitor;
 use serde::Serialize;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::Write;
 use std::path::Path;
 
@@ -31,7 +31,8 @@ pub struct Page {
 }
 
 impl Page {
-    /// The cases that the options mean; sabotaged, with a constant changed in each kernel.
+    /// A page of those cases of a quick run that have, together, every choice that there is; with `full` of all cases of
+    /// a quick run. Sabotaged, with a constant changed in each kernel.
     ///
     /// # Errors
     /// [`Error::Parameter`](crate::Error::Parameter) if the options mean no case;
@@ -42,7 +43,7 @@ impl Page {
         monitor: &Monitor,
         watch: &mut dyn FnMut(Progress<'_>),
     ) -> Result<Self> {
-        let cases = options.cases()?;
+        let cases = if options.full { options.quick().cases()? } else { covering(options.cases()?) };
         let mut recorded = Vec::new();
         for (done, case) in cases.iter().enumerate() {
             monitor.check()?;
@@ -89,6 +90,22 @@ impl Page {
     }
 }
 
+/// Those of many cases that together have every word of all of them, by operation and precision: browsers take long to
+/// compile a kernel, and a page holds all its inputs.
+fn covering(mut cases: Vec<Case>) -> Vec<Case> {
+    let mut seen = HashSet::new();
+    cases.retain(|case| {
+        // What is blended has its place counted from the end: methods have different numbers of words.
+        let words = case.name.replace(" and ", ", ").replace(" to ", ", ");
+        let places = words.rsplit(", ").enumerate();
+        let is_new =
+            |(place, word): (usize, &str)| seen.insert((case.operation, case.precision, place, word.to_owned()));
+        // All of them: a case shows everything it has.
+        places.map(is_new).filter(|is_new| *is_new).count() > 0
+    });
+    cases
+}
+
 /// A case as data; its kernels may run more than once.
 fn record(case: &Case, seed: u64) -> Result<Vec<PageCase>> {
     let job = case.job(seed)?;
@@ -99,7 +116,7 @@ fn record(case: &Case, seed: u64) -> Result<Vec<PageCase>> {
         _ => format!("{}, dispatch {}", case.name, number + 1),
     };
     let page_case = |(number, mut recording): (usize, Recording)| {
-        recording.allow(bound.codes, bound.ulps);
+        recording.allow(Tolerance { codes: bound.codes, ulps: bound.ulps, degrees: bound.degrees });
         PageCase { name: name(number), operation: case.operation, recording }
     };
     Ok(recordings.into_iter().enumerate().map(page_case).collect())
@@ -227,6 +244,7 @@ mod tests {
         let cases = data["cases"].as_array().unwrap();
         assert_eq!(cases.len(), page.cases());
         assert!(cases.len() > 20 && page.values() > 20 * 800);
+        assert_eq!(page.values(), cases.iter().map(values).sum::<usize>());
         let kernels = data["kernels"].as_array().unwrap();
         let names: Vec<_> = kernels.iter().map(|kernel| kernel["name"].as_str().unwrap()).collect();
         assert_eq!(names, ["bake, fast", "parallax, fast", "blend, fast"]);
@@ -234,6 +252,38 @@ mod tests {
             let source = sources().iter().find(|source| kernel["name"] == source.name).unwrap();
             assert_eq!(kernel["text"], source.text());
         }
+    }
+
+    fn values(case: &serde_json::Value) -> usize {
+        let expected = case["expected"].as_array().unwrap().iter();
+        let values = expected.map(|it| {
+            let per_texel = if it["code"] == "bits" { 1 } else { it["channels"].as_u64().unwrap() };
+            it["rows"].as_u64().unwrap() * per_texel * width(it)
+        });
+        values.sum::<u64>() as usize
+    }
+
+    /// Texels of a row.
+    fn width(rows: &serde_json::Value) -> u64 {
+        let bytes = match rows["code"].as_str().unwrap() {
+            "u8" | "i8" => 1,
+            "u16" | "i16" | "f16" => 2,
+            _ => 4,
+        };
+        rows["row_bytes"].as_u64().unwrap() / bytes / rows["channels"].as_u64().unwrap()
+    }
+
+    #[test]
+    fn pages_have_every_choice_in_a_part_of_the_cases() {
+        let all = Options::default().cases().unwrap();
+        let (count, words) = (all.len(), all.iter().flat_map(words_of).collect::<HashSet<_>>());
+        let some = covering(all);
+        assert_eq!(words, some.iter().flat_map(words_of).collect());
+        assert!(2 * some.len() < count, "{} of {count}", some.len());
+    }
+
+    fn words_of(case: &Case) -> Vec<(&'static str, String)> {
+        case.name.split([',', ' ']).map(|word| (case.operation, word.to_owned())).collect()
     }
 
     #[test]
