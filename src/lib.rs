@@ -126,9 +126,9 @@ pub mod extremes {
 }
 #[cfg(feature = "gpu")]
 pub mod gpu {
-    //! Bakes on a wgpu device of the caller's.
+    //! Bakes on a wgpu device of the caller's, and the kernels as they are compiled.
 
-    pub use crate::backend::gpu::{CodeTarget, HeightSource, Hosted, NormalBake};
+    pub use crate::backend::gpu::{CodeTarget, HeightSource, Hosted, KernelVariant, NormalBake, kernels};
     /// The version that [`Hosted`] works with.
     pub use wgpu;
 }

@@ -58,16 +58,22 @@ impl Baker {
     /// runs again on the CPU.
     pub fn auto() -> Self {
         #[cfg(feature = "gpu")]
-        let reason = match crate::backend::gpu::Gpu::open_real() {
+        return Self::or_cpu(crate::backend::gpu::Gpu::open_real());
+        #[cfg(not(feature = "gpu"))]
+        Self { reason: "this build has no gpu feature".into(), ..Self::cpu() }
+    }
+
+    /// A GPU with the CPU to take over, or why there is only the CPU.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn or_cpu(gpu: Result<crate::backend::gpu::Gpu, String>) -> Self {
+        let Self { backend: cpu, .. } = Self::cpu();
+        match gpu {
             Ok(gpu) => {
                 let reason = "the first real GPU that passes its self-test".into();
-                return Self { backend: Arc::new(gpu), fallback: Some(Self::cpu().backend), reason };
+                Self { backend: Arc::new(gpu), fallback: Some(cpu), reason }
             }
-            Err(reason) => reason,
-        };
-        #[cfg(not(feature = "gpu"))]
-        let reason = "this build has no gpu feature".into();
-        Self { reason, ..Self::cpu() }
+            Err(reason) => Self { backend: cpu, fallback: None, reason },
+        }
     }
 
     /// All cores, vectorised.
@@ -98,6 +104,13 @@ impl Baker {
     /// The specification: plain scalar code on one thread, to compare with.
     pub fn reference() -> Self {
         Self::only(Reference)
+    }
+
+    /// A backend that a test has prepared, with the CPU to take over or without.
+    #[cfg(all(test, feature = "gpu"))]
+    pub(crate) fn prepared(backend: Arc<dyn Backend>, falls_back: bool) -> Self {
+        let fallback = falls_back.then(|| Self::cpu().backend);
+        Self { backend, fallback, reason: "prepared".into() }
     }
 
     fn only(backend: impl Backend + 'static) -> Self {

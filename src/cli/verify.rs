@@ -72,7 +72,8 @@ pub struct VerifyArguments {
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
 
-    /// Write a page that verifies the browser which opens it, instead of verifying this machine
+    /// Write a page that runs the same kernels by the WebGPU of any browser that opens it; nothing is verified here
+    #[cfg(feature = "gpu")]
     #[arg(long, value_name = "FILE", conflicts_with_all = ["adapter", "backend", "json"])]
     pub html: Option<PathBuf>,
 
@@ -90,11 +91,12 @@ pub enum Backend {
 
 pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Failure> {
     let monitor = interruptible();
-    let options = Options { seed: arguments.seed, full: arguments.full, only: arguments.only.clone() };
+    #[cfg(feature = "gpu")]
     if let Some(path) = &arguments.html {
-        return write_page(path, arguments, &options, &monitor);
+        return write_page(path, arguments, &monitor);
     }
     let file = arguments.json.as_deref().map(|path| JsonFile::create("report", path, &[], None)).transpose()?;
+    let options = arguments.options();
     let mut report = Report::new(&options, arguments.sabotage);
     for subject in subjects(arguments)? {
         match examine(subject, arguments, &options, &monitor) {
@@ -118,6 +120,45 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Failure> {
         put(summary(&report));
     }
     Ok(if report.passed() { Exit::Success } else { Exit::Failed })
+}
+
+impl VerifyArguments {
+    fn options(&self) -> Options {
+        Options { seed: self.seed, full: self.full, only: self.only.clone() }
+    }
+}
+
+#[cfg(feature = "gpu")]
+fn write_page(path: &Path, arguments: &VerifyArguments, monitor: &Monitor) -> Result<Exit, Failure> {
+    let bar = bar(arguments.quiet);
+    let watch = &mut |progress: Progress<'_>| advance(&bar, "page", progress);
+    let page = match Page::new(&arguments.options(), arguments.sabotage, monitor, watch) {
+        Err(Error::Cancelled) => {
+            say("interrupted: no page was written");
+            return Ok(Exit::Interrupted);
+        }
+        page => page?,
+    };
+    bar.finish_and_clear();
+    texbake::io::replace_file(path, page.html().as_bytes())?;
+    if !arguments.quiet {
+        let (cases, values) = (page.cases(), page.values());
+        put(format_args!("{}: {cases} cases, {values} values; open it in a browser with WebGPU", path.display()));
+    }
+    Ok(Exit::Success)
+}
+
+/// Hidden where stderr is no terminal.
+fn bar(is_quiet: bool) -> ProgressBar {
+    let bar = if is_quiet { ProgressBar::hidden() } else { ProgressBar::new(0) };
+    bar.set_style(ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}").unwrap_or(ProgressStyle::default_bar()));
+    bar
+}
+
+fn advance(bar: &ProgressBar, name: &str, progress: Progress<'_>) {
+    bar.set_length(progress.of as u64);
+    bar.set_position(progress.done as u64);
+    bar.set_message(format!("{name}: {}", progress.case));
 }
 
 /// What the arguments mean; an adapter that does not open is a finding, unless it was named.
@@ -157,44 +198,6 @@ fn adapter(name: &str) -> Result<Subject> {
 #[cfg(not(feature = "gpu"))]
 fn adapters() -> Vec<Result<Subject>> {
     Vec::new()
-}
-
-#[cfg(feature = "gpu")]
-fn write_page(path: &Path, arguments: &VerifyArguments, options: &Options, monitor: &Monitor) -> Result<Exit, Failure> {
-    let bar = bar(arguments.quiet);
-    let page = Page::new(options, arguments.sabotage, monitor, &mut |progress| advance(&bar, "page", progress));
-    bar.finish_and_clear();
-    let page = match page {
-        Err(Error::Cancelled) => {
-            say("interrupted: no page was written");
-            return Ok(Exit::Interrupted);
-        }
-        page => page?,
-    };
-    page.save(path)?;
-    if !arguments.quiet {
-        let (cases, values) = (page.cases(), page.values());
-        put(format_args!("{}: {cases} cases, {values} values; open it in a browser with WebGPU", path.display()));
-    }
-    Ok(Exit::Success)
-}
-
-#[cfg(not(feature = "gpu"))]
-fn write_page(_: &Path, _: &VerifyArguments, _: &Options, _: &Monitor) -> Result<Exit, Failure> {
-    Err(Failure::Failed("--html needs the kernels: this build has no gpu feature".into()))
-}
-
-/// Hidden where stderr is no terminal.
-fn bar(is_quiet: bool) -> ProgressBar {
-    let bar = if is_quiet { ProgressBar::hidden() } else { ProgressBar::new(0) };
-    bar.set_style(ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}").unwrap_or(ProgressStyle::default_bar()));
-    bar
-}
-
-fn advance(bar: &ProgressBar, name: &str, progress: Progress<'_>) {
-    bar.set_length(progress.of as u64);
-    bar.set_position(progress.done as u64);
-    bar.set_message(format!("{name}: {}", progress.case));
 }
 
 /// Verifies a device while a bar moves.

@@ -15,6 +15,8 @@ mod answer;
 mod bounds;
 mod cases;
 mod chance;
+#[cfg(feature = "gpu")]
+mod html;
 mod job;
 mod mismatch;
 mod oracle;
@@ -28,6 +30,8 @@ mod shrink;
 mod subject;
 
 pub use agreement::{Agreement, Bound, Errors};
+#[cfg(feature = "gpu")]
+pub use html::Page;
 #[cfg(feature = "gpu")]
 pub use own_kernel::{Binding, KernelComparison, OwnKernel, Tolerance, WordMismatch, Work};
 #[cfg(feature = "gpu")]

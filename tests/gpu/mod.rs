@@ -1,8 +1,5 @@
 //! Bakes on a device of the host's: the same bytes from buffers and textures, in the host's own encoder.
 
-#[cfg(feature = "cli")]
-mod faults;
-
 use crate::support::{FORMATS, Image, Random, every_baker, map_f32, map_u8, map_u16, options};
 use std::sync::OnceLock;
 use texbake::gpu::{CodeTarget, HeightSource, Hosted, wgpu};

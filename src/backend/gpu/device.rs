@@ -40,11 +40,18 @@ pub(crate) struct Device {
     /// What a test makes of the bytes that come back.
     #[cfg(test)]
     pub spoil: Mutex<Option<Spoil>>,
+    /// Whether a test refuses memory for so many bytes.
+    #[cfg(test)]
+    pub refuse: Mutex<Option<Refuse>>,
 }
 
 /// Changes the bytes of a download.
 #[cfg(test)]
 pub(super) type Spoil = Box<dyn FnMut(&mut Vec<u8>) + Send>;
+
+/// Whether there shall be no memory for so many bytes.
+#[cfg(test)]
+pub(super) type Refuse = Box<dyn FnMut(u64) -> bool + Send>;
 
 /// Why a device did not do something.
 #[derive(Debug)]
@@ -75,6 +82,7 @@ impl Device {
     /// # Errors
     /// [`Error::Device`] if the driver refuses.
     pub fn open(adapter: &wgpu::Adapter) -> Result<Self> {
+        let name = describe(&adapter.get_info());
         // What every WebGPU device has, and the buffer sizes of this one.
         let own = adapter.limits();
         let limits = wgpu::Limits {
@@ -82,15 +90,6 @@ impl Device {
             max_storage_buffer_binding_size: own.max_storage_buffer_binding_size,
             ..wgpu::Limits::downlevel_defaults().using_resolution(own)
         };
-        Self::open_with(adapter, limits)
-    }
-
-    /// Opens an adapter for as much as `limits` say.
-    ///
-    /// # Errors
-    /// As [`Device::open`].
-    pub fn open_with(adapter: &wgpu::Adapter, limits: wgpu::Limits) -> Result<Self> {
-        let name = describe(&adapter.get_info());
         let descriptor = DeviceDescriptor { label: Some("texbake"), required_limits: limits, ..Default::default() };
         let opened = pollster::block_on(adapter.request_device(&descriptor));
         let (device, queue) = opened.map_err(|error| Error::device(&name, error))?;
@@ -117,11 +116,13 @@ impl Device {
             lost: Arc::default(),
             #[cfg(test)]
             spoil: Mutex::default(),
+            #[cfg(test)]
+            refuse: Mutex::default(),
         }
     }
 
     /// Without handlers, wgpu panics on errors that nobody asks for and keeps silent about a lost device.
-    fn watch(&self) {
+    pub fn watch(&self) {
         let lost = self.lost.clone();
         self.device.on_uncaptured_error(Arc::new(move |error| {
             let _ = lost.set(error.to_string());
@@ -199,7 +200,11 @@ impl Device {
     fn patiently(&self, submission: &Submission) -> Result<()> {
         match self.is_done(submission, self.patience)? {
             true => Ok(()),
-            false => Err(self.give_up(format_args!("it has not answered for {:?}", self.patience))),
+            false => {
+                // Whoever drops the last handle waits for the device once more, and for ever.
+                std::mem::forget((self.device.clone(), self.queue.clone()));
+                Err(self.give_up(format_args!("it has not answered for {:?}", self.patience)))
+            }
         }
     }
 
@@ -319,6 +324,10 @@ impl Device {
                 // A slot that is too small would never be used again by a set of equal maps.
                 idle.pop();
                 drop(idle);
+                #[cfg(test)]
+                if lock(&self.refuse).as_mut().is_some_and(|refuse| refuse(input_bytes + output_bytes)) {
+                    return Err(Fault::OutOfMemory(self.error("no memory, says a test")));
+                }
                 self.attempt(|| Ok(Slot::new(&self.device, input_bytes, output_bytes)))
             }
         }

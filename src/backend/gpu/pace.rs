@@ -54,6 +54,9 @@ struct Seen {
     count: u64,
     /// When the latest end was seen.
     latest_end: Option<Instant>,
+    /// All that was computed, for tests.
+    #[cfg(test)]
+    all: Vec<Work>,
 }
 
 impl Default for Pace {
@@ -75,8 +78,17 @@ impl Pace {
         seen.count += 1;
         let begun = Instant::now();
         let submission = Submission { number: seen.count, index: submit() };
+        #[cfg(test)]
+        seen.all.extend(work.clone());
         seen.under_way.push_back(UnderWay { submission: submission.clone(), work, begun });
         submission
+    }
+
+    /// Items of all submissions with an entry point, in the queue's order.
+    #[cfg(test)]
+    pub fn submitted(&self, entry_point: &str) -> Vec<usize> {
+        let seen = lock(&self.seen);
+        seen.all.iter().filter(|work| work.kernel.source.entry_point == entry_point).map(|work| work.items).collect()
     }
 
     /// The next submission whose end is to be seen, up to this one.

@@ -201,8 +201,9 @@ impl Backend for Recorder {
         Reference.device()
     }
 
-    /// A map is one band: a dispatch on any device.
+    /// A map is one band.
     fn band_rows(&self, _: RowBytes) -> usize {
+        // The most workgroups of a dispatch in each dimension, on every WebGPU device.
         65_535
     }
 
@@ -350,7 +351,7 @@ impl Recording {
     fn of_tangents(plan: &TangentPlan<'_>, answer: &[[f32; 4]]) -> Self {
         let mut parts = Parts::new(plan, tangents::frame_words(plan.method), usize::MAX, 0);
         let fans = parts.next().unwrap_or(0..0);
-        let words = tangents::words_of(plan, &parts, &fans);
+        let words = tangents::words(plan, &parts, &fans);
         let mut inputs = vec![0; 4 * words.inputs];
         let written = tangents::write(WriteOnly::from_mut(inputs.as_mut_slice()), plan, &parts, &fans);
         let params = tangents::Params { nonce: NONCE, longest_row: u32::MAX, ..written };

@@ -60,8 +60,13 @@ pub(super) const NEGATIVE: u32 = 1 << 31;
 
 /// The kernels of a plan: the one for triangles, and the one for fans.
 pub(super) fn kernels(plan: &TangentPlan<'_>) -> [Kernel; 2] {
+    kernels_of(plan.method, plan.precision)
+}
+
+/// The kernels of a method.
+pub(super) fn kernels_of(method: TangentMethod, precision: Precision) -> [Kernel; 2] {
     use TangentMethod::{Hegde, Lengyel, Mikktspace};
-    let sources = match (plan.method, plan.precision) {
+    let sources = match (method, precision) {
         (Lengyel, Precision::Exact) => [FRAMES_LENGYEL, TANGENTS_SUMMED],
         (Lengyel, Precision::Fast) => [FRAMES_LENGYEL_FAST, TANGENTS_SUMMED_FAST],
         (Hegde, Precision::Exact) => [FRAMES_HEGDE, TANGENTS_SUMMED],
@@ -90,7 +95,7 @@ pub(super) fn run(device: &Device, plan: &TangentPlan<'_>, limits: Limits, out: 
     let mut done = 0;
     while done < out.len() {
         let fans = parts.next().map_err(|fan| refused.take().unwrap_or_else(|| too_large(device, fan)))?;
-        let words = words_of(plan, &parts, &fans);
+        let words = words(plan, &parts, &fans);
         let job = Job { device, kernels: &kernels, pipelines: &pipelines, plan, parts: &parts, words, limits };
         match job.run(fans.clone(), &mut out[fans.clone()]) {
             Ok(()) => done = fans.end,
@@ -151,6 +156,7 @@ impl Job<'_> {
     /// Sends the part to the device.
     fn launch(&self, slot: &Slot, fans: Range<usize>, nonce: u32) -> Result<Mapping> {
         let Self { device, plan, parts, words, limits, .. } = self;
+        let tangents = first_tangent(plan, parts);
         let mut view = slot.upload.get_mapped_range_mut(..).map_err(|error| device.error(error))?;
         let longest_row = limits.row as u32;
         let params = Params { nonce, longest_row, ..write(view.slice(..), plan, parts, &fans) };
@@ -163,8 +169,7 @@ impl Job<'_> {
         device.submit(None, upload.finish());
         self.dispatch(slot, params, fans.len())?;
         let mut download = encoder("download");
-        let (place, bytes) = (4 * u64::from(params.tangents), 16 * fans.len() as u64);
-        download.copy_buffer_to_buffer(&slot.outputs, place, &slot.download, 0, bytes);
+        download.copy_buffer_to_buffer(&slot.outputs, 4 * tangents as u64, &slot.download, 0, 16 * fans.len() as u64);
         let submission = device.submit(None, download.finish());
         Ok(Mapping::of(slot, submission))
     }
@@ -215,12 +220,17 @@ fn corners_of<'a>(plan: &TangentPlan<'a>, fans: &Range<usize>) -> &'a [u32] {
 }
 
 /// Words that a part of the fans takes.
-pub(super) fn words_of(plan: &TangentPlan<'_>, parts: &Parts<'_>, fans: &Range<usize>) -> Words {
+pub(super) fn words(plan: &TangentPlan<'_>, parts: &Parts<'_>, fans: &Range<usize>) -> Words {
     let counts = [parts.vertices.of.len(), parts.triangles.of.len(), fans.len(), corners_of(plan, fans).len()];
     Words::new(counts, frame_words(plan.method))
 }
 
-/// Writes a part's inputs, and tells where they lie; the tangents follow the frames.
+/// The word of `outputs` where a part's tangents begin: behind its frames.
+fn first_tangent(plan: &TangentPlan<'_>, parts: &Parts<'_>) -> usize {
+    frame_words(plan.method) * parts.triangles.of.len()
+}
+
+/// Writes a part's inputs, and tells where they lie.
 pub(super) fn write(
     inputs: WriteOnly<'_, [u8]>,
     plan: &TangentPlan<'_>,
@@ -242,7 +252,7 @@ pub(super) fn write(
         offsets: inputs.add(offsets.par_iter().map(|offset| offset - offsets[0])),
         corners: inputs
             .add(corners_of(plan, fans).par_iter().map(|&corner| 4 * triangles.get(corner / 3) + corner % 3)),
-        tangents: (frame_words(plan.method) * triangles.of.len()) as u32,
+        tangents: first_tangent(plan, parts) as u32,
         ..Params::default()
     }
 }
