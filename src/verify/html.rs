@@ -59,6 +59,15 @@ impl Page {
         &self.html
     }
 
+    /// Writes the page, which appears under its name when it is complete; its folders are made.
+    ///
+    /// # Errors
+    /// [`Error::File`](crate::Error::File) if there is something else than a file under its name;
+    /// [`Error::Io`](crate::Error::Io).
+    pub fn write(&self, path: impl AsRef<std::path::Path>) -> Result<()> {
+        crate::io::replace_file(path.as_ref(), self.html.as_bytes())
+    }
+
     /// Cases that it runs.
     pub fn cases(&self) -> usize {
         self.cases

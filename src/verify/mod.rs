@@ -34,5 +34,5 @@ pub use agreement::{Agreement, Bound, Errors};
 pub use html::Page;
 #[cfg(feature = "gpu")]
 pub use own_kernel::{Binding, KernelComparison, OwnKernel, Tolerance, WordMismatch, Work};
-pub use report::{Comparison, DeviceReport, Mismatch, Report};
+pub use report::{Comparison, DeviceReport, Mismatch, OracleAnswer, Report, Stored};
 pub use subject::{Options, Progress, Subject};

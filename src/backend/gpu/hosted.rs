@@ -5,7 +5,7 @@ use super::device::Device;
 use super::kernel::Kernel;
 use super::operation::{Operation, Places, Rows, row_bytes};
 use super::transfer::dispatch;
-use super::{Gpu, Untested, adapters};
+use super::{Gpu, Untested};
 use crate::error::{Error, Result};
 use crate::map::{Channels, Depth, Encoding, HeightType, NormalFormat, Size};
 use crate::ops::bake::{BakePlan, NormalOptions};
@@ -77,8 +77,7 @@ impl Hosted {
     /// # Errors
     /// [`Error::Device`] if the device computes other bytes than the CPU, or cannot run the kernels.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self> {
-        let name = adapters::describe(&device.adapter_info());
-        let gpu = Gpu::tested(Untested { device: Device::new(name, device.clone(), queue.clone()) })?;
+        let gpu = Gpu::tested(Untested::hosted(device, queue))?;
         Ok(Self { gpu })
     }
 

@@ -89,6 +89,17 @@ impl Untested {
         OwnPipeline::new(&self.device, wgsl, entry_point, constants)
     }
 
+    /// A device that somebody else has opened.
+    pub fn hosted(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
+        let name = adapters::describe(&device.adapter_info());
+        Self { device: Device::new(name, device.clone(), queue.clone()) }
+    }
+
+    /// Drops what was compiled.
+    pub fn forget_kernels(&self) {
+        self.device.forget_kernels();
+    }
+
     /// Runs other texts in place of the kernels' own.
     pub fn replace_kernels(&self, text: impl Fn(&str) -> String) {
         sources().iter().for_each(|source| self.device.substitute(*source, &text(&source.text())));
