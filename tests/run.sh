@@ -50,7 +50,7 @@ packages=(
     gcc g++ libc6-dev # g++ for meshopt, beside which tangents are measured
     libvulkan1 mesa-vulkan-drivers
     libegl1 libgles2 libgl1-mesa-dri
-    chromium-common # SwiftShader's Vulkan driver, without the browser
+    chromium # the page of `texbake verify --html`, and SwiftShader's Vulkan driver
 )
 # The Khronos validator of glTF. Some systems have npm in the package of node.
 if ! command -v node > /dev/null || ! command -v npm > /dev/null; then
@@ -111,6 +111,17 @@ choose_software_devices() {
     # A device that is missing is a failure, not a test passed over.
     export TEXBAKE_REQUIRE_GPU=1
     [ -n "$lavapipe" ] && [ -n "$swiftshader" ] && [ -n "$mesa" ]
+}
+
+# The browser that runs the page of `texbake verify --html`: a second WGSL compiler and WebGPU implementation.
+find_browser() {
+    local name
+    # A browser that is missing is a failure, not a test passed over.
+    export TEXBAKE_REQUIRE_BROWSER=1
+    for name in "${TEXBAKE_CHROMIUM:-chromium}" chromium-browser google-chrome; do
+        command -v "$name" && return 0
+    done
+    return 1
 }
 
 # The maps of real materials, from the source package of pypbr on PyPI: fetched once, kept with the build, never in git.
@@ -209,6 +220,17 @@ fetch_models() {
     echo "$TEXBAKE_MODELS"
 }
 
+# The tests of full disks need one of their own, which a namespace gives; where the system forbids it, they say so.
+require_mounts() {
+    local mount='mount -t tmpfs -o size=16k tmpfs /mnt'
+    if unshare -m sh -c "$mount" 2> /dev/null || unshare -rm sh -c "$mount" 2> /dev/null; then
+        export TEXBAKE_REQUIRE_MOUNTS=1
+        echo "a process may mount"
+    else
+        echo "no process may mount here: full disks are not tested"
+    fi
+}
+
 # Without cargo-deny (its build takes minutes, so it is not installed here): every dependency offers one of the licences that deny.toml allows.
 check_licences() {
     local allowed others
@@ -243,9 +265,11 @@ fi
 
 check "packages" install_packages
 check "software devices" choose_software_devices
+check "browser" find_browser
 check "materials" fetch_materials
 check "glTF validator" fetch_validator
 check "models" fetch_models
+check "mounts" require_mounts
 check "formatting" cargo fmt --check
 check "lints" cargo clippy --release --all-targets -- -D warnings
 check "lints without the gpu feature" cargo clippy --release --no-default-features --features cli -- -D warnings

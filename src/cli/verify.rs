@@ -8,7 +8,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::path::{Path, PathBuf};
 use texbake::batch::JsonFile;
 use texbake::stream::Monitor;
-use texbake::verify::{DeviceReport, Mismatch, Options, Report, Subject};
+#[cfg(feature = "gpu")]
+use texbake::verify::Page;
+use texbake::verify::{DeviceReport, Mismatch, Options, Progress, Report, Subject};
 use texbake::{Error, Result};
 
 /// Prove that every device of this machine computes what it should, kernel by kernel
@@ -30,7 +32,8 @@ With --sabotage a constant of each kernel is changed first: then every
 comparison must fail, or verify would prove nothing.
 
 The page of --html runs the same kernels by the WebGPU of the browser that
-opens it, and compares them with answers that it contains.
+opens it, and compares them with answers that it contains. It has as many of
+the cases as give every choice that there is; all of them with --full.
 
 Examples:
   texbake verify
@@ -90,7 +93,7 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Failure> {
     let monitor = interruptible();
     #[cfg(feature = "gpu")]
     if let Some(path) = &arguments.html {
-        return write_page(path, arguments);
+        return write_page(path, arguments, &monitor);
     }
     let file = arguments.json.as_deref().map(|path| JsonFile::create("report", path, &[], None)).transpose()?;
     let options = arguments.options();
@@ -126,13 +129,36 @@ impl VerifyArguments {
 }
 
 #[cfg(feature = "gpu")]
-fn write_page(path: &Path, arguments: &VerifyArguments) -> Result<Exit, Failure> {
-    let page = texbake::verify::html_page(&arguments.options(), arguments.sabotage)?;
-    texbake::io::replace_file(path, page.as_bytes())?;
+fn write_page(path: &Path, arguments: &VerifyArguments, monitor: &Monitor) -> Result<Exit, Failure> {
+    let bar = bar(arguments.quiet);
+    let watch = &mut |progress: Progress<'_>| advance(&bar, "page", progress);
+    let page = match Page::new(&arguments.options(), arguments.sabotage, monitor, watch) {
+        Err(Error::Cancelled) => {
+            say("interrupted: no page was written");
+            return Ok(Exit::Interrupted);
+        }
+        page => page?,
+    };
+    bar.finish_and_clear();
+    texbake::io::replace_file(path, page.html().as_bytes())?;
     if !arguments.quiet {
-        put(format_args!("{}: open it in a browser that has WebGPU", path.display()));
+        let (cases, values) = (page.cases(), page.values());
+        put(format_args!("{}: {cases} cases, {values} values; open it in a browser with WebGPU", path.display()));
     }
     Ok(Exit::Success)
+}
+
+/// Hidden where stderr is no terminal.
+fn bar(is_quiet: bool) -> ProgressBar {
+    let bar = if is_quiet { ProgressBar::hidden() } else { ProgressBar::new(0) };
+    bar.set_style(ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}").unwrap_or(ProgressStyle::default_bar()));
+    bar
+}
+
+fn advance(bar: &ProgressBar, name: &str, progress: Progress<'_>) {
+    bar.set_length(progress.of as u64);
+    bar.set_position(progress.done as u64);
+    bar.set_message(format!("{name}: {}", progress.case));
 }
 
 /// What the arguments mean; an adapter that does not open is a finding, unless it was named.
@@ -187,15 +213,9 @@ fn examine(
         Err(Error::Device { adapter, reason }) => return Ok(DeviceReport::failed(adapter, reason)),
         Err(error) => return Err(error),
     };
-    // Hidden where stderr is no terminal.
-    let bar = if arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(0) };
-    bar.set_style(ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}").unwrap_or(ProgressStyle::default_bar()));
+    let bar = bar(arguments.quiet);
     let name = subject.name();
-    let report = subject.verify(options, monitor, &mut |progress| {
-        bar.set_length(progress.of as u64);
-        bar.set_position(progress.done as u64);
-        bar.set_message(format!("{name}: {}", progress.case));
-    });
+    let report = subject.verify(options, monitor, &mut |progress| advance(&bar, &name, progress));
     bar.finish_and_clear();
     report
 }

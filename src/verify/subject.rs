@@ -35,6 +35,12 @@ impl Default for Options {
 }
 
 impl Options {
+    /// The same of a quick run.
+    #[cfg(feature = "gpu")]
+    pub(super) fn quick(&self) -> Self {
+        Self { full: false, ..self.clone() }
+    }
+
     /// The cases that these options mean.
     ///
     /// # Errors

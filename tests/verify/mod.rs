@@ -1,5 +1,7 @@
 //! Verification itself: it passes where all is well, notices sabotage, shrinks what fails, and says how to repeat it.
 
+#[cfg(feature = "gpu")]
+mod browser;
 #[cfg(feature = "cli")]
 mod command;
 #[cfg(feature = "gpu")]

@@ -22,7 +22,7 @@ mod pace;
 mod parallax;
 pub(crate) mod recording;
 #[cfg(test)]
-pub(crate) mod recording_tests;
+mod recording_tests;
 #[cfg(test)]
 mod reflection;
 mod self_test;
