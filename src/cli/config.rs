@@ -46,7 +46,12 @@ impl Config {
             let reason = format!("it has {bytes} bytes: settings have at most {MOST_BYTES}");
             return Err(Error::File { path, reason, remedy: "is it another file?".into() });
         }
-        let text = std::fs::read_to_string(&path).map_err(io)?;
+        let bytes = std::fs::read(&path).map_err(io)?;
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let valid = error.utf8_error().valid_up_to();
+            let text = String::from_utf8_lossy(error.as_bytes());
+            Source { path: &path, text: &text }.error(valid, "it is no text in UTF-8", "save it as UTF-8")
+        })?;
         Self::parse(&path, &text).map(Some)
     }
 

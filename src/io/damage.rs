@@ -11,7 +11,8 @@ pub(super) fn truncated(path: &Path) -> Error {
 
 /// The file is not what its format demands, for `reason`.
 pub(super) fn damaged(path: &Path, reason: impl ToString) -> Error {
-    Error::file(path, reason, "it is damaged; copy or export it again")
+    // Some decoders end a line where others end a sentence.
+    Error::file(path, reason.to_string().trim_end(), "it is damaged; copy or export it again")
 }
 
 /// What a decoder calls an error of the system: only one with the system's number is; others are damage.

@@ -1,5 +1,6 @@
 //! What fuzzing found, made small: each input once ended in what its comment says.
 
+use super::hand_made_tiff::Tiff;
 use super::support::{Folder, read_error};
 use ::exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
 use std::fmt::Write;
@@ -86,4 +87,40 @@ fn a_comb_of_thousands_of_corners_is_cut() {
     let mut polygon = vec![(0.0, 0.0), (2.0 * teeth as f64, 0.0)];
     polygon.extend((0..teeth).rev().flat_map(|i| [(2.0 * i as f64 + 1.0, 9.0), (2.0 * i as f64, 1.0)]));
     assert_eq!(areas.iter().sum::<f64>(), outline(&polygon));
+}
+
+/// The decoder makes room for all values that an entry claims, 32 bytes each, before it reads them: 160 MB for a tag of
+/// a file of 400 bytes, whatever the limit was.
+#[test]
+fn values_of_a_tiff_stand_in_the_file() {
+    let folder = Folder::new();
+    let mut tiff = Tiff::grey(2, 2, 8, 1, vec![vec![1, 2, 3, 4]]);
+    // Tag 338 says what further samples are.
+    tiff.extra.push((338, 3, 5_000_000, vec![0; 8]));
+    let message = read_error(&folder.file("t.tif", &tiff.bytes()), &ReadOptions::default());
+    assert!(
+        message.contains("its tag 338 claims 5000000 values, more than the file holds; it is damaged"),
+        "{message}"
+    );
+
+    let values = vec![0; 2 * 40_000];
+    tiff.extra = vec![(338, 3, 40_000, values)];
+    let little = ReadOptions { max_bytes: 1 << 20, ..ReadOptions::default() };
+    let message = read_error(&folder.file("t.tif", &tiff.bytes()), &little);
+    let expected =
+        "the 40000 values of its tag 338 take 1280000 bytes, above the limit of 1048576; raise it with --max-bytes";
+    assert!(message.contains(expected), "{message}");
+}
+
+/// Settings that are no UTF-8 were refused in the system's words, without a line and without a way out.
+#[test]
+#[cfg(feature = "cli")]
+fn settings_in_another_encoding() {
+    let folder = Folder::new();
+    folder.file("texbake.toml", b"[defaults]\n# H\xf6he\nscale = 24\n");
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_texbake"));
+    let done = command.args(["bake", ".", "--out", "baked"]).current_dir(folder.path("")).output().unwrap();
+    let stderr = String::from_utf8(done.stderr).unwrap();
+    assert_eq!(done.status.code(), Some(2), "{stderr}");
+    assert!(stderr.contains("texbake.toml:2: it is no text in UTF-8; save it as UTF-8"), "{stderr}");
 }
