@@ -26,6 +26,7 @@
 //! - [`Baker::tangents`] computes the tangents of a [`Mesh`]; [`io::Model`] reads meshes from glTF and OBJ files, and
 //!   writes them with tangents.
 //! - [`inspect`] finds what is wrong with a normal map, mends it, and compares two.
+//! - [`shading`] has the twins of what a shader does with the maps.
 #![cfg_attr(feature = "gpu", doc = "- [`gpu::Hosted`] bakes on the caller's own wgpu device, without a readback.")]
 //!
 //! # What is held in memory
@@ -107,44 +108,8 @@
 //!
 //! # Degenerate cases
 //!
-//! | case | result |
-//! | --- | --- |
-//! | one row or one column | that axis is its own neighbour: no slope |
-//! | two rows or columns that wrap | both neighbours are the same texel: no slope |
-//! | scale 0, or a flat map | (0, 0, 1) exactly, on every device |
-//! | a float height that is NaN or infinite | [`Error::NotFinite`] names the first |
-//! | float heights below 2^-90, slopes below 2^-25, components below 2^-100 in magnitude | count as zero |
-//! | float slopes up to and beyond `f32::MAX` | no overflow: the direction is right |
-//! | float heights below 0 or above 1 in a parallax map | count as 0 or 1 in (2h - 1), as they are in m_z |
-//! | the unorm code 128 (32768), which zero is written as | reads as zero, so a flat map changes nothing in a blend |
-//! | the snorm code -128 (-32768), and 0 of biased | reads as -1 |
-//! | a normal with z at or below zero | z counts as the least above zero: one of L for integers, 2^-24 for floats |
-//! | a normal of any length | slopes do not depend on it; parallax normalises it; other blends take it as it is |
-//! | a blend of which nothing is left, (0, 0, 0) | (0, 0, 1) |
-//! | a float normal with a component that is NaN, infinite or beyond 65536 | [`Error::NoDirection`] names the first |
-//! | float components of normals below 2^-25 in magnitude | count as zero |
-//!
-//! Of meshes, counted in [`TangentReport`] where they are no error:
-//!
-//! | case | result |
-//! | --- | --- |
-//! | a position, texture coordinate or normal that is NaN or infinite | [`Error::Vertex`] names the first |
-//! | an index that is no vertex's | [`Error::Parameter`] names the triangle |
-//! | coordinates of 1e20, of 1e-20 | the bits of unit scale: only ratios matter |
-//! | a triangle without area in the texture | adds nothing to its vertices |
-//! | differences of texture coordinates below 2^-40 of the greatest coordinate | count as zero; not for `Mikktspace` |
-//! | tangents whose sum is below 2^-16 of what it would be if they agreed | cancel; not for `Mikktspace` |
-//! | a triangle without area in space | adds what its edges say; `Hegde`: nothing; `Mikktspace`: as the reference |
-//! | a vertex with such triangles only, or whose tangents cancel (a pole) | the axis furthest from n, projected |
-//! | a vertex without triangles | the same |
-//! | a vertex between mirrored halves | split: one for each handedness |
-//! | a mapping that is upside down (v inverted) | w is negated; n is the mesh's own, so nothing else changes |
-//! | u that jumps from 1 to 0 across shared vertices (a cylinder) | taken at its word, or [`TangentOptions::unwrap`] |
-//! | no normals | [`MissingNormals`]: each triangle's own, which splits its vertices, or smooth ones |
-//! | a zero among the normals | the smooth normal of the triangles at that position; (0, 0, 1) if they have no area |
-//! | a normal whose length is off by more than 1 % | normalised, and counted |
-//! | by less | `Mikktspace`: taken as it is, as the reference does; else normalised |
-//! | no triangles, no vertices | no tangents |
+//! [`extremes`] says what comes of flat maps and infinite heights, of scales and weights at their ends, of normals that
+//! point nowhere and triangles without area, and of an eye in the plane.
 
 #[macro_use]
 mod vectorised;
@@ -156,11 +121,14 @@ pub mod batch;
 mod devices;
 mod error;
 mod exact;
+pub mod extremes {
+    #![doc = include_str!("../docs/extremes.md")]
+}
 #[cfg(feature = "gpu")]
 pub mod gpu {
-    //! Bakes on a wgpu device of the caller's.
+    //! Bakes on a wgpu device of the caller's, and the kernels as they are compiled.
 
-    pub use crate::backend::gpu::{CodeTarget, HeightSource, Hosted, NormalBake};
+    pub use crate::backend::gpu::{CodeTarget, HeightSource, Hosted, KernelVariant, NormalBake, kernels};
     /// The version that [`Hosted`] works with.
     pub use wgpu;
 }
@@ -170,6 +138,7 @@ mod map;
 mod mesh;
 mod names;
 mod ops;
+pub mod shading;
 pub mod stream;
 pub mod verify;
 

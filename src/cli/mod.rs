@@ -4,7 +4,7 @@ mod args;
 mod bake;
 mod blend;
 mod check;
-mod config;
+pub(crate) mod config;
 mod devices;
 mod diff;
 mod exit;

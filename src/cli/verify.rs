@@ -5,7 +5,7 @@ use super::interruptible;
 use super::print::{comparison_table, put, say};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use texbake::batch::JsonFile;
 use texbake::stream::Monitor;
 use texbake::verify::{DeviceReport, Mismatch, Options, Report, Subject};
@@ -57,7 +57,7 @@ pub struct VerifyArguments {
     #[arg(long, value_name = "NUMBER", default_value_t = Options::default().seed)]
     pub seed: u64,
 
-    /// Only cases that have all these words, with commas between them
+    /// Only cases that have all these words, with commas between them; a|b is either
     #[arg(long, value_name = "WORDS")]
     pub only: Option<String>,
 
@@ -68,6 +68,11 @@ pub struct VerifyArguments {
     /// Write what was found as JSON
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+
+    /// Write a page that runs the same kernels by the WebGPU of any browser that opens it; nothing is verified here
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["adapter", "backend", "json"])]
+    pub html: Option<PathBuf>,
 
     /// Print failures only
     #[arg(short, long)]
@@ -83,8 +88,12 @@ pub enum Backend {
 
 pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Failure> {
     let monitor = interruptible();
+    #[cfg(feature = "gpu")]
+    if let Some(path) = &arguments.html {
+        return write_page(path, arguments);
+    }
     let file = arguments.json.as_deref().map(|path| JsonFile::create("report", path, &[], None)).transpose()?;
-    let options = Options { seed: arguments.seed, full: arguments.full, only: arguments.only.clone() };
+    let options = arguments.options();
     let mut report = Report::new(&options, arguments.sabotage);
     for subject in subjects(arguments)? {
         match examine(subject, arguments, &options, &monitor) {
@@ -108,6 +117,22 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Failure> {
         put(summary(&report));
     }
     Ok(if report.passed() { Exit::Success } else { Exit::Failed })
+}
+
+impl VerifyArguments {
+    fn options(&self) -> Options {
+        Options { seed: self.seed, full: self.full, only: self.only.clone() }
+    }
+}
+
+#[cfg(feature = "gpu")]
+fn write_page(path: &Path, arguments: &VerifyArguments) -> Result<Exit, Failure> {
+    let page = texbake::verify::html_page(&arguments.options(), arguments.sabotage)?;
+    texbake::io::replace_file(path, page.as_bytes())?;
+    if !arguments.quiet {
+        put(format_args!("{}: open it in a browser that has WebGPU", path.display()));
+    }
+    Ok(Exit::Success)
 }
 
 /// What the arguments mean; an adapter that does not open is a finding, unless it was named.
@@ -205,9 +230,10 @@ fn show_mismatch(mismatch: &Mismatch) {
 fn summary(report: &Report) -> String {
     let failed = report.devices.iter().filter(|device| !device.passed()).count();
     let devices = report.devices.len();
-    let found = match failed {
-        0 => format!("all {devices} devices agree"),
-        _ => format!("{failed} of {devices} devices FAILED"),
+    let found = match (failed, devices) {
+        (0, 1) => "the device agrees in everything".to_owned(),
+        (0, _) => format!("all {devices} devices agree in everything"),
+        _ => format!("{failed} of {devices} FAILED"),
     };
     let sabotage = if report.sabotaged { ", sabotaged" } else { "" };
     format!("texbake {}, seed {}{sabotage}: {found}", report.version, report.seed)

@@ -1,6 +1,6 @@
 //! How two answers agree.
 
-use super::answer::{Answer, Meaning};
+use super::answer::Answer;
 use crate::map::Depth;
 use serde::Serialize;
 
@@ -48,7 +48,8 @@ pub struct Agreement {
     pub codes: Errors,
     /// Differences of floats in units in the last place of 1: 2^-10 for 16f, 2^-23 for 32f.
     pub ulps: Errors,
-    /// Angles between directions, in degrees.
+    /// Angles between directions, in degrees: of tangents, and of normals in 32f with three components. Those of codes,
+    /// of 16f and of two components say more about the format.
     pub degrees: Errors,
 }
 
@@ -59,7 +60,7 @@ pub struct Bound {
     pub codes: f64,
     /// Of floats, as [`Agreement::ulps`].
     pub ulps: f64,
-    /// Of directions, before they are rounded to codes.
+    /// Of directions, as [`Agreement::degrees`].
     pub degrees: f64,
 }
 
@@ -126,12 +127,11 @@ fn compare_map(expected: &Answer, got: &Answer, bound: Option<&Bound>, agreement
                 first = first.or(Some(index));
             }
         }
-        if let Some(angle) = angle(expected, got, texel) {
+        if let Some(angle) = expected.has_fine_directions().then(|| angle(expected, got, texel)).flatten() {
             agreement.degrees.add(angle);
-            // Codes are coarser than any bound of directions.
-            let is_float = ulps_of_1(expected.format.depth).is_some();
-            if is_float && bound.is_some_and(|bound| angle > bound.degrees + rounding_of(expected)) {
-                first = first.or(Some(codes.start));
+            if bound.is_some_and(|bound| angle > bound.degrees) {
+                let error = |index: &usize| error_of(expected, got, *index);
+                first = first.or(codes.max_by(|a, b| error(a).total_cmp(&error(b))));
             }
         }
     }
@@ -150,7 +150,7 @@ fn settle(expected: &Answer, agreement: &mut Agreement) {
         Some(_) => fill(&mut agreement.ulps, codes),
         None => fill(&mut agreement.codes, codes),
     }
-    if expected.meaning != Meaning::Parallax {
+    if expected.has_fine_directions() {
         fill(&mut agreement.degrees, directions);
     }
 }
@@ -169,11 +169,6 @@ fn error_of(expected: &Answer, got: &Answer, index: usize) -> f64 {
     unit * (got.number(index) - expected.number(index)).abs()
 }
 
-/// Half a step of a float format, in degrees.
-fn rounding_of(answer: &Answer) -> f64 {
-    ulps_of_1(answer.format.depth).map_or(0.0, |unit| (1.0 / unit).to_degrees())
-}
-
 /// The angle between the directions of a texel, in degrees; `None` for numbers, and where either has no direction.
 fn angle(expected: &Answer, got: &Answer, texel: usize) -> Option<f64> {
     let (a, b) = (expected.direction(texel)?, got.direction(texel)?);
@@ -185,8 +180,15 @@ fn angle(expected: &Answer, got: &Answer, texel: usize) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::answer::Meaning;
     use super::*;
     use crate::map::{Codes, Encoding, TexelFormat};
+
+    fn floats(components: &[f32]) -> Answer {
+        let format = TexelFormat { encoding: Encoding::Float, depth: Depth::Float32, channels: 3 };
+        let codes = Codes::F32(components.into());
+        Answer { meaning: Meaning::Normal, format, width: components.len() / 3, codes }
+    }
 
     fn snorm(codes: &[u8]) -> Answer {
         let format = TexelFormat { encoding: Encoding::Snorm, depth: Depth::Bits8, channels: 3 };
@@ -198,7 +200,18 @@ mod tests {
         let map = snorm(&[0, 0, 127, 90, 0, 90]);
         let (agreement, first) = compare(&[map.clone()], &[map], None);
         assert_eq!((agreement.values, agreement.differing, first), (6, 0, None));
-        assert_eq!((agreement.codes.count, agreement.degrees.count), (6, 2));
+        assert_eq!((agreement.codes.count, agreement.degrees.count), (6, 0));
+    }
+
+    #[test]
+    fn directions_are_measured_in_degrees() {
+        let (expected, got) = (floats(&[0.0, 0.0, 1.0, 1.0, 0.0, 0.0]), floats(&[0.0, 0.0, 1.0, 1.0, 1e-4, 0.0]));
+        let bound = |degrees| Bound { codes: 0.0, ulps: 1e9, degrees };
+        let compare = |degrees| compare(&[expected.clone()], &[got.clone()], Some(&bound(degrees)));
+        let (agreement, first) = compare(1e-2);
+        assert!((agreement.degrees.largest - 1e-4f64.to_degrees()).abs() < 1e-7, "{agreement:?}");
+        assert_eq!((agreement.degrees.count, first), (2, None));
+        assert_eq!(compare(5e-3).1, Some(Difference { map: 0, index: 4 }));
     }
 
     #[test]
@@ -209,8 +222,6 @@ mod tests {
         let (agreement, first) = compare(maps.0, maps.1, None);
         assert_eq!((agreement.differing, first), (1, Some(Difference { map: 0, index: 4 })));
         assert_eq!((agreement.codes.largest, agreement.codes.mean), (1.0, 1.0 / 6.0));
-        // atan(1 / (90 sqrt(2))).
-        assert!((agreement.degrees.largest - 0.450_147).abs() < 1e-6, "{}", agreement.degrees.largest);
         let bound = |codes| Bound { codes, ulps: 0.0, degrees: 0.0 };
         assert_eq!(compare(maps.0, maps.1, Some(&bound(1.0))).1, None);
         assert_eq!(compare(maps.0, maps.1, Some(&bound(0.9))).1, Some(Difference { map: 0, index: 4 }));

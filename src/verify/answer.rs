@@ -1,6 +1,6 @@
 //! What a backend answers: the codes of a map, or the tangents of a mesh's corners.
 
-use crate::map::{Codes, CodesRef, Encoding, NormalMap, ParallaxMap, TexelFormat};
+use crate::map::{Codes, CodesRef, Depth, Encoding, NormalMap, ParallaxMap, TexelFormat};
 use half::f16;
 
 /// What the codes of a texel are together.
@@ -94,6 +94,11 @@ impl Answer {
             _ => self.component(at + 2),
         };
         Some([x, y, z])
+    }
+
+    /// Whether directions are stored so finely that angles between them are those of what was computed.
+    pub fn has_fine_directions(&self) -> bool {
+        self.meaning != Meaning::Parallax && self.format.depth == Depth::Float32 && self.format.channels >= 3
     }
 
     /// What a code of a texel is called.

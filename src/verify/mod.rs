@@ -15,17 +15,23 @@ mod answer;
 mod bounds;
 mod cases;
 mod chance;
+#[cfg(feature = "gpu")]
+mod html;
 mod job;
 mod mismatch;
 mod oracle;
 #[cfg(feature = "gpu")]
 mod own_kernel;
+#[cfg(feature = "gpu")]
+mod page;
 mod report;
 mod sabotage;
 mod shrink;
 mod subject;
 
 pub use agreement::{Agreement, Bound, Errors};
+#[cfg(feature = "gpu")]
+pub use html::html_page;
 #[cfg(feature = "gpu")]
 pub use own_kernel::{Binding, KernelComparison, OwnKernel, Tolerance, WordMismatch, Work};
 pub use report::{Comparison, DeviceReport, Mismatch, Report};

@@ -1,7 +1,7 @@
 //! The smallest input that still fails.
 
 /// Runs that one search may take: each compiles nothing, and takes as long as a small job does.
-const MOST_RUNS: usize = 2000;
+const MOST_RUNS: usize = 600;
 
 /// Walks from a failing input to ever smaller ones that fail too, until none of the candidates does.
 ///

@@ -24,7 +24,7 @@ pub struct Options {
     pub seed: u64,
     /// Every mix of options instead of every option: minutes instead of seconds on a GPU.
     pub full: bool,
-    /// Only cases that have all these words: `normal map, u16, wrap`.
+    /// Only cases that have all these words: `normal map, u8|u16, wrap`.
     pub only: Option<String>,
 }
 
@@ -43,7 +43,9 @@ impl Options {
         let mut cases = cases(if self.full { Extent::Full } else { Extent::Quick });
         if let Some(only) = &self.only {
             let wanted: Vec<&str> = only.split(',').map(str::trim).collect();
-            cases.retain(|case| wanted.iter().all(|word| case.name.split(", ").any(|part| part == *word)));
+            let has =
+                |name: &str, word: &str| word.split('|').any(|word| name.split(", ").any(|part| part == word.trim()));
+            cases.retain(|case| wanted.iter().all(|word| has(&case.name, word)));
             if cases.is_empty() {
                 let range = "words of a case's name with commas between them, as normal map, exact, u16, wrap";
                 return Err(Error::parameter("only", only, range));

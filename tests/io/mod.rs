@@ -3,6 +3,7 @@
 mod damage;
 mod exr;
 mod gltf;
+mod hand_made_png;
 mod hand_made_tiff;
 mod normal;
 mod obj;
@@ -11,5 +12,6 @@ mod png;
 mod raster;
 mod raw;
 mod replace;
+mod samples;
 mod support;
 mod tiff;

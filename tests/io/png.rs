@@ -1,5 +1,6 @@
 //! PNG in and out.
 
+use super::hand_made_png::hand_made;
 use super::support::{Folder, Noise, Values, format, read_all_ways, read_error, write};
 use png::{BitDepth, ColorType};
 use texbake::io::{Channel, ColorSpace, ReadOptions, create_normals, open_heights};
@@ -111,40 +112,6 @@ fn interlaced_files_read_like_others() {
     let folder = Folder::new();
     let file = folder.file("i.png", &hand_made(4, 4, 8, 0, 1, &rows));
     assert_eq!(read_all_ways(&file, &default()).unwrap(), Values::U8(codes));
-}
-
-/// A PNG written by hand, its rows in one stored deflate block.
-fn hand_made(width: u32, height: u32, bits: u8, colour: u8, interlace: u8, rows: &[u8]) -> Vec<u8> {
-    let mut file = vec![0x89, b'P', b'N', b'G', 13, 10, 26, 10];
-    let mut header = [width.to_be_bytes(), height.to_be_bytes()].concat();
-    header.extend([bits, colour, 0, 0, interlace]);
-    let length = rows.len() as u16;
-    let mut data = vec![0x78, 0x01, 1];
-    data.extend(length.to_le_bytes());
-    data.extend((!length).to_le_bytes());
-    data.extend(rows);
-    data.extend(adler32(rows).to_be_bytes());
-    for (name, content) in [(b"IHDR", &header), (b"IDAT", &data), (b"IEND", &Vec::new())] {
-        file.extend((content.len() as u32).to_be_bytes());
-        let named = [&name[..], content].concat();
-        file.extend(&named);
-        file.extend(crc32(&named).to_be_bytes());
-    }
-    file
-}
-
-fn adler32(bytes: &[u8]) -> u32 {
-    let (a, b) = bytes.iter().fold((1, 0), |(a, b), byte| {
-        let a = (a + u32::from(*byte)) % 65521;
-        (a, (b + a) % 65521)
-    });
-    b << 16 | a
-}
-
-fn crc32(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(!0, |crc, byte| {
-        (0..8).fold(crc ^ u32::from(*byte), |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 })
-    })
 }
 
 #[test]
@@ -275,7 +242,7 @@ fn a_transparent_colour_counts_as_the_alpha_that_it_becomes() {
     let folder = Folder::new();
     let file = hand_made(16, 16, 16, 2, 1, &[0]);
     let mut key = [b"tRNS".as_slice(), &[0; 6]].concat();
-    let checksum = crc32(&key).to_be_bytes();
+    let checksum = crc32fast::hash(&key).to_be_bytes();
     key = [&6u32.to_be_bytes()[..], &key, &checksum].concat();
     let path = folder.file("k.png", &[&file[..33], &key, &file[33..]].concat());
     // Six bytes a texel in the file, eight when it is decoded.

@@ -1,5 +1,6 @@
 //! A comparison that cannot fail proves nothing: every helper is shown to catch one wrong code.
 
+mod extremes;
 mod tangents;
 mod two_maps;
 

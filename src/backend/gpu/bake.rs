@@ -79,7 +79,7 @@ pub(super) fn run(
 }
 
 /// The row above, the rows and the row below of a band.
-fn layers<'a>(band: &HeightBand<'a>) -> Vec<Layer<'a>> {
+pub(super) fn layers<'a>(band: &HeightBand<'a>) -> Vec<Layer<'a>> {
     fn cut<'a, T>(band: &Band<'a, T>, codes: impl Fn(&'a [T]) -> CodesRef<'a>) -> Vec<Layer<'a>> {
         let layer = |rows, heights| Layer { rows, codes: codes(heights) };
         vec![layer(1, band.above), layer(band.body.len() / band.width, band.body), layer(1, band.below)]

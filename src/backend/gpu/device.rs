@@ -25,7 +25,7 @@ pub(crate) struct Device {
     pub name: String,
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
-    layout: BindGroupLayout,
+    pub(super) layout: BindGroupLayout,
     modules: Mutex<HashMap<KernelSource, ShaderModule>>,
     pipelines: Mutex<HashMap<Kernel, ComputePipeline>>,
     idle: Mutex<Vec<Slot>>,

@@ -77,7 +77,7 @@ pub(super) fn compare(device: &Device, operation: &impl LayerOperation, size: Si
 }
 
 /// Noise of a format; floats of both signs, from 2^-30 to 4 or, of 16 bits, of every exponent.
-fn noise(format: TexelFormat, size: Size, seed: u32) -> Codes {
+pub(super) fn noise(format: TexelFormat, size: Size, seed: u32) -> Codes {
     let count = (size.texels() * format.channels) as u32;
     let bits = (0..count).map(|index| scrambled(seed * count + index));
     match format.depth {

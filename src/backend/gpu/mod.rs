@@ -20,6 +20,9 @@ mod output;
 mod own_kernel;
 mod pace;
 mod parallax;
+pub(crate) mod recording;
+#[cfg(test)]
+pub(crate) mod recording_tests;
 #[cfg(test)]
 mod reflection;
 mod self_test;
@@ -31,6 +34,7 @@ mod tangent_tests;
 mod tangents;
 mod tangents_self_test;
 mod transfer;
+mod variants;
 
 use crate::backend::{Backend, RowBytes};
 use crate::error::{Error, Result};
@@ -47,6 +51,7 @@ pub use own_kernel::Binding;
 pub(crate) use own_kernel::OwnPipeline;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use tangents::Limits;
+pub use variants::{KernelVariant, kernels};
 
 /// A GPU that runs whatever it is given, and may compute wrong bytes.
 pub(crate) struct Untested {

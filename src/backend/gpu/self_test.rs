@@ -91,7 +91,7 @@ fn filled(
 
 /// Noise of a height type: above of every height, floats of every exponent and both signs, subnormals included; below
 /// in squares of four texels, flat inside, floats from -1 to 3, so that normals of any scale point up and lean.
-fn noise(height_type: HeightType) -> Result<HeightMap> {
+pub(super) fn noise(height_type: HeightType) -> Result<HeightMap> {
     let is_flat = |y: usize| y >= HEIGHT / 2;
     let bits = |x: usize, y: usize| {
         let (x, y) = if is_flat(y) { (x / 4, y / 4 * 4) } else { (x, y) };

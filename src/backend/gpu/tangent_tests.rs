@@ -121,7 +121,7 @@ fn fast_tangents_are_finite_and_near() {
 }
 
 /// A torus of `around` by `across` squares, each cut in two, whose texture is not stretched evenly.
-fn torus(around: u32, across: u32) -> (Mesh, Vec<[f32; 3]>) {
+pub(super) fn torus(around: u32, across: u32) -> (Mesh, Vec<[f32; 3]>) {
     let turn = |part: u32, of: u32| (std::f32::consts::TAU * part as f32 / of as f32).sin_cos();
     let vertices = (0..=across).flat_map(|j| (0..=around).map(move |i| (i, j)));
     let at = |i, j| j * (around + 1) + i;

@@ -17,7 +17,7 @@ use bytemuck::{NoUninit, Pod, Zeroable};
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::ops::Range;
-use wgpu::{BufferViewMut, CommandEncoderDescriptor, ComputePipeline};
+use wgpu::{CommandEncoderDescriptor, ComputePipeline, WriteOnly};
 
 /// `Params` of kernels/tangents.wgsl; the words mean what they say there.
 #[repr(C)]
@@ -56,12 +56,17 @@ impl Limits {
 }
 
 /// The bit that a word of proof has for a sign of -1.
-const NEGATIVE: u32 = 1 << 31;
+pub(super) const NEGATIVE: u32 = 1 << 31;
 
 /// The kernels of a plan: the one for triangles, and the one for fans.
 pub(super) fn kernels(plan: &TangentPlan<'_>) -> [Kernel; 2] {
+    kernels_of(plan.method, plan.precision)
+}
+
+/// The kernels of a method.
+pub(super) fn kernels_of(method: TangentMethod, precision: Precision) -> [Kernel; 2] {
     use TangentMethod::{Hegde, Lengyel, Mikktspace};
-    let sources = match (plan.method, plan.precision) {
+    let sources = match (method, precision) {
         (Lengyel, Precision::Exact) => [FRAMES_LENGYEL, TANGENTS_SUMMED],
         (Lengyel, Precision::Fast) => [FRAMES_LENGYEL_FAST, TANGENTS_SUMMED_FAST],
         (Hegde, Precision::Exact) => [FRAMES_HEGDE, TANGENTS_SUMMED],
@@ -73,7 +78,7 @@ pub(super) fn kernels(plan: &TangentPlan<'_>) -> [Kernel; 2] {
 }
 
 /// `FRAME_WORDS` of a plan's kernels.
-fn frame_words(method: TangentMethod) -> usize {
+pub(super) fn frame_words(method: TangentMethod) -> usize {
     match method {
         TangentMethod::Mikktspace => 4,
         TangentMethod::Lengyel | TangentMethod::Hegde => 7,
@@ -90,8 +95,7 @@ pub(super) fn run(device: &Device, plan: &TangentPlan<'_>, limits: Limits, out: 
     let mut done = 0;
     while done < out.len() {
         let fans = parts.next().map_err(|fan| refused.take().unwrap_or_else(|| too_large(device, fan)))?;
-        let counts = [&parts.vertices, &parts.triangles].map(|numbers| numbers.of.len());
-        let words = Words::new([counts[0], counts[1], fans.len(), corners_of(plan, &fans).len()], frame_words);
+        let words = words(plan, &parts, &fans);
         let job = Job { device, kernels: &kernels, pipelines: &pipelines, plan, parts: &parts, words, limits };
         match job.run(fans.clone(), &mut out[fans.clone()]) {
             Ok(()) => done = fans.end,
@@ -152,10 +156,11 @@ impl Job<'_> {
     /// Sends the part to the device.
     fn launch(&self, slot: &Slot, fans: Range<usize>, nonce: u32) -> Result<Mapping> {
         let Self { device, plan, parts, words, limits, .. } = self;
-        let tangents = frame_words(plan.method) * parts.triangles.of.len();
-        let view = slot.upload.get_mapped_range_mut(..).map_err(|error| device.error(error))?;
+        let tangents = first_tangent(plan, parts);
+        let mut view = slot.upload.get_mapped_range_mut(..).map_err(|error| device.error(error))?;
         let longest_row = limits.row as u32;
-        let params = Params { nonce, longest_row, tangents: tangents as u32, ..write(view, plan, parts, &fans) };
+        let params = Params { nonce, longest_row, ..write(view.slice(..), plan, parts, &fans) };
+        drop(view);
         slot.upload.unmap();
         let encoder = |label| device.device.create_command_encoder(&CommandEncoderDescriptor { label: Some(label) });
 
@@ -214,12 +219,28 @@ fn corners_of<'a>(plan: &TangentPlan<'a>, fans: &Range<usize>) -> &'a [u32] {
     &adjacency.corners()[adjacency.offsets()[fans.start] as usize..adjacency.offsets()[fans.end] as usize]
 }
 
+/// Words that a part of the fans takes.
+pub(super) fn words(plan: &TangentPlan<'_>, parts: &Parts<'_>, fans: &Range<usize>) -> Words {
+    let counts = [parts.vertices.of.len(), parts.triangles.of.len(), fans.len(), corners_of(plan, fans).len()];
+    Words::new(counts, frame_words(plan.method))
+}
+
+/// The word of `outputs` where a part's tangents begin: behind its frames.
+fn first_tangent(plan: &TangentPlan<'_>, parts: &Parts<'_>) -> usize {
+    frame_words(plan.method) * parts.triangles.of.len()
+}
+
 /// Writes a part's inputs, and tells where they lie.
-fn write(view: BufferViewMut, plan: &TangentPlan<'_>, parts: &Parts<'_>, fans: &Range<usize>) -> Params {
+pub(super) fn write(
+    inputs: WriteOnly<'_, [u8]>,
+    plan: &TangentPlan<'_>,
+    parts: &Parts<'_>,
+    fans: &Range<usize>,
+) -> Params {
     let TangentPlan { surface, fans: all, .. } = *plan;
     let Parts { triangles, vertices, .. } = parts;
     let offsets = &all.corners.offsets()[fans.start..=fans.end];
-    let mut inputs = Inputs { view, words: 0 };
+    let mut inputs = Inputs { buffer: inputs, words: 0 };
     Params {
         positions: inputs.add(vertices.of.par_iter().map(|&vertex| surface.position(vertex))),
         edges: inputs.add(triangles.of.par_iter().map(|&triangle| surface.texture_edges(triangle as usize))),
@@ -231,24 +252,25 @@ fn write(view: BufferViewMut, plan: &TangentPlan<'_>, parts: &Parts<'_>, fans: &
         offsets: inputs.add(offsets.par_iter().map(|offset| offset - offsets[0])),
         corners: inputs
             .add(corners_of(plan, fans).par_iter().map(|&corner| 4 * triangles.get(corner / 3) + corner % 3)),
+        tangents: first_tangent(plan, parts) as u32,
         ..Params::default()
     }
 }
 
 /// Inputs on their way to a device, one kind after the other.
-struct Inputs {
-    view: BufferViewMut,
+struct Inputs<'a> {
+    buffer: WriteOnly<'a, [u8]>,
     words: usize,
 }
 
-impl Inputs {
+impl Inputs<'_> {
     /// Writes some more, and tells the word where they begin.
     fn add<T: NoUninit + Send>(&mut self, values: impl IndexedParallelIterator<Item = T>) -> u32 {
         let values: Vec<T> = values.collect();
         let bytes: &[u8] = bytemuck::cast_slice(&values);
         let place = self.words;
         self.words += bytes.len() / 4;
-        self.view.slice(4 * place..4 * self.words).copy_from_slice(bytes);
+        self.buffer.slice(4 * place..4 * self.words).copy_from_slice(bytes);
         place as u32
     }
 }

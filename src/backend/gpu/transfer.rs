@@ -12,7 +12,7 @@ use crate::stream::CodeSink;
 use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::mpsc::{Receiver, channel};
-use wgpu::{BufferViewMut, CommandEncoderDescriptor, ComputePipeline, MapMode};
+use wgpu::{CommandEncoderDescriptor, ComputePipeline, MapMode, WriteOnly};
 
 /// Dispatches in flight.
 pub(super) const RING: usize = 3;
@@ -120,17 +120,14 @@ impl<'a, O: Operation> Transfer<'a, O> {
     /// Sends a band to the device.
     fn launch(&self, rows: usize, layers: &[Layer<'_>]) -> Result<InFlight, Fault> {
         let device = self.device;
-        let (inputs, input_words) = stacked(layers.iter().map(|layer| layer.rows).zip(&self.input_row_bytes));
-        let (outputs, marks) = stacked(self.output_row_bytes.iter().map(|row_bytes| (rows, row_bytes)));
-        let places = Places { rows: rows as u32, inputs, outputs, marks, nonce: device.fresh_nonce() };
+        let row_bytes = [self.input_row_bytes.as_slice(), &self.output_row_bytes];
+        let (places, input_words) = placed(row_bytes, rows, layers, device.fresh_nonce());
         let input_bytes = 4 * u64::from(input_words);
-        let output_bytes = 4 * (u64::from(marks) + rows as u64);
+        let output_bytes = 4 * (u64::from(places.marks) + rows as u64);
         let slot = device.slot(input_bytes, output_bytes)?;
         device.attempt(|| {
             let mut view = slot.upload.get_mapped_range_mut(..).map_err(|error| device.error(error))?;
-            for (layer, at) in layers.iter().zip(&places.inputs) {
-                write_rows(&mut view, layer, *at);
-            }
+            write_layers(view.slice(..), layers, &places);
             drop(view);
             slot.upload.unmap();
             device.queue.write_buffer(&slot.params, 0, &self.operation.params(&places));
@@ -234,6 +231,18 @@ pub(super) fn dispatch(
     pass.dispatch_workgroups(row_groups(width) as u32, rows as u32, 1);
 }
 
+/// Where everything of a dispatch lies, with rows of so many bytes in and out, and the words of its inputs.
+pub(super) fn placed(
+    [input_row_bytes, output_row_bytes]: [&[usize]; 2],
+    rows: usize,
+    layers: &[Layer<'_>],
+    nonce: u32,
+) -> (Places, u32) {
+    let (inputs, input_words) = stacked(layers.iter().map(|layer| layer.rows).zip(input_row_bytes));
+    let (outputs, marks) = stacked(output_row_bytes.iter().map(|row_bytes| (rows, row_bytes)));
+    (Places { rows: rows as u32, inputs, outputs, marks, nonce }, input_words)
+}
+
 /// Maps of so many rows of so many bytes one after the other, and the word after the last.
 fn stacked<'a>(maps: impl Iterator<Item = (usize, &'a usize)>) -> (Vec<Rows>, u32) {
     let mut place = 0;
@@ -253,8 +262,15 @@ fn bytes_of_row(at: Rows, row: usize) -> Range<usize> {
     start..start + 4 * at.words as usize
 }
 
+/// Writes the layers of a dispatch to their places.
+pub(super) fn write_layers(mut inputs: WriteOnly<'_, [u8]>, layers: &[Layer<'_>], places: &Places) {
+    for (layer, at) in layers.iter().zip(&places.inputs) {
+        write_rows(&mut inputs, layer, *at);
+    }
+}
+
 /// Writes the rows of a layer, each padded with zeros.
-fn write_rows(view: &mut BufferViewMut, layer: &Layer<'_>, at: Rows) {
+fn write_rows(inputs: &mut WriteOnly<'_, [u8]>, layer: &Layer<'_>, at: Rows) {
     let row_codes = layer.codes.len() / layer.rows;
     let mut widened = Vec::new();
     for row in 0..layer.rows {
@@ -269,8 +285,8 @@ fn write_rows(view: &mut BufferViewMut, layer: &Layer<'_>, at: Rows) {
         };
         let Range { start, end } = bytes_of_row(at, row);
         let padding = start + bytes.len();
-        view.slice(start..padding).copy_from_slice(bytes);
-        view.slice(padding..end).fill(0);
+        inputs.slice(start..padding).copy_from_slice(bytes);
+        inputs.slice(padding..end).fill(0);
     }
 }
 

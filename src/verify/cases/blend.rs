@@ -55,8 +55,14 @@ pub(super) fn cases(extent: Extent) -> Vec<Case> {
     let formats = normal_formats();
     let mut cases = Vec::new();
     for precision in PRECISIONS {
-        for method in METHODS {
-            for (at, &base) in formats.iter().enumerate() {
+        for (number, method) in METHODS.into_iter().enumerate() {
+            // `fast` promises nothing where large weights cancel.
+            if precision == Precision::Fast && matches!(method, Method::Weighted("65535", _)) {
+                continue;
+            }
+            // Of quick runs every third for each method, and each for some.
+            let (first, step) = if extent == Extent::Quick { (number % 3, 3) } else { (0, 1) };
+            for (at, &base) in formats.iter().enumerate().skip(first).step_by(step) {
                 // Other partners for each method.
                 for detail in turns(extent, 3 * at + cases.len() / formats.len(), &formats) {
                     for format in turns(extent, 5 * at + cases.len() / 5, &formats) {

@@ -5,6 +5,7 @@ use crate::baker::Baker;
 use crate::error::Result;
 use crate::exact::Scale;
 use crate::map::{Edge, Edges, HeightMap};
+use crate::ops::Precision;
 use crate::ops::bake::{BakeOptions, Filter};
 use crate::verify::answer::Answer;
 use crate::verify::oracle::{self, Real};
@@ -33,7 +34,9 @@ impl BakeJob {
             of(BakeOptions { edges: Edges::both(Edge::Wrap), ..options }),
         ];
         let values = simpler_heights(&self.heights).into_iter().map(with);
-        cut.chain(plain.into_iter().filter(|job| job != self)).chain(values).collect()
+        let plain = plain.into_iter().filter(|job| job != self);
+        let simpler = plain.chain(values).filter(|_| options.precision == Precision::Exact);
+        cut.chain(simpler).collect()
     }
 
     pub fn real(&self, map: usize, index: usize) -> Option<Real> {
@@ -50,6 +53,6 @@ impl BakeJob {
 
     pub fn input(&self) -> String {
         let BakeOptions { scale, filter, edges, .. } = self.options;
-        format!("scale {scale:?}, {filter}, {edges}\n{}", print_heights("heights", &self.heights))
+        format!("scale {scale}, {filter}, {edges}\n{}", print_heights("heights", &self.heights))
     }
 }

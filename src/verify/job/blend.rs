@@ -4,6 +4,7 @@ use super::pieces::{cut_heights, cut_normals, cuts, print_heights, print_normals
 use crate::baker::Baker;
 use crate::error::Result;
 use crate::map::{HeightMap, NormalMap};
+use crate::ops::Precision;
 use crate::ops::blend::{BlendInputs, BlendOptions};
 use crate::verify::answer::Answer;
 use crate::verify::oracle::{self, Real};
@@ -34,7 +35,8 @@ impl BlendJob {
         let detail = simpler_normals(&self.detail).into_iter().map(|detail| Self { detail, ..self.clone() });
         let masks = self.mask.iter().flat_map(simpler_heights);
         let mask = masks.map(|mask| Self { mask: Some(mask), ..self.clone() });
-        cut.chain(base).chain(detail).chain(mask).collect()
+        let simpler = base.chain(detail).chain(mask).filter(|_| self.options.precision == Precision::Exact);
+        cut.chain(simpler).collect()
     }
 
     pub fn has_integers_alone(&self) -> bool {
@@ -50,12 +52,7 @@ impl BlendJob {
     }
 
     pub fn input(&self) -> String {
-        let mut text = format!(
-            "{:?}\n{}\n{}",
-            self.options.method,
-            print_normals("base", &self.base),
-            print_normals("detail", &self.detail)
-        );
+        let mut text = format!("{}\n{}", print_normals("base", &self.base), print_normals("detail", &self.detail));
         if let Some(mask) = &self.mask {
             text += "\n";
             text += &print_heights("mask", mask);

@@ -60,7 +60,8 @@ impl Job {
         precision == Precision::Fast
     }
 
-    /// Simpler jobs of the same kernel, the boldest first, around code `index` of answer `map`, which is wrong.
+    /// Simpler jobs of the same kernel, the boldest first, around code `index` of answer `map`, which is wrong. Those of
+    /// `fast` are cut only: simpler numbers could be some for which it promises nothing.
     pub fn smaller(&self, map: usize, index: usize) -> Vec<Self> {
         match self {
             Self::Bake(job) => job.smaller(map, index).into_iter().map(Self::Bake).collect(),

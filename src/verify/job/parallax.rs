@@ -30,7 +30,7 @@ impl ParallaxJob {
         });
         let heights = simpler_heights(&self.heights).into_iter().map(|heights| Self { heights, ..self.clone() });
         let normals = simpler_normals(&self.normals).into_iter().map(|normals| Self { normals, ..self.clone() });
-        cut.chain(heights).chain(normals).collect()
+        cut.chain(heights.chain(normals).filter(|_| self.precision == Precision::Exact)).collect()
     }
 
     pub fn has_integers_alone(&self) -> bool {

@@ -129,7 +129,7 @@ pub(super) fn print_heights(name: &str, map: &HeightMap) -> String {
         Heights::U16(heights) => heights.iter().map(u16::to_string).collect(),
         Heights::F32(heights) => heights.iter().map(|&height| print_float(height)).collect(),
     };
-    print_rows(&format!("{name}, {} x {}", map.size(), map.height_type()), &values, map.size().width())
+    print_rows(&format!("{name}, {}, {}", map.size(), map.height_type()), &values, map.size().width())
 }
 
 /// Codes in rows, texel by texel.

@@ -5,6 +5,7 @@ use crate::baker::Baker;
 use crate::error::Result;
 use crate::map::{Codes, Depth, Encoding, TexelFormat};
 use crate::mesh::Mesh;
+use crate::ops::Precision;
 use crate::ops::tangents::TangentOptions;
 use crate::verify::answer::{Answer, Meaning};
 use crate::verify::shrink::simpler_floats;
@@ -45,7 +46,7 @@ impl TangentJob {
             }
             block /= 2;
         }
-        if self.mesh.positions().len() <= FEW {
+        if self.mesh.positions().len() <= FEW && self.options.precision == Precision::Exact {
             let [positions, normals] = [self.mesh.positions(), self.mesh.normals().unwrap_or_default()];
             let simpler = |value| simpler_floats(value).collect();
             for list in replaced(positions.as_flattened(), simpler) {
@@ -72,9 +73,10 @@ impl TangentJob {
     }
 
     pub fn input(&self) -> String {
-        let mut text = format!("{:?}", self.options);
+        let unwrapped = if self.options.unwrap { ", unwrapped" } else { "" };
+        let mut text = format!("mesh{unwrapped}:");
         if self.mesh.positions().len() > 3 * FEW {
-            return text + "\ntoo many vertices to show";
+            return text + " too many vertices to show";
         }
         let list = |values: &[f32]| values.iter().map(|&value| print_float(value)).collect::<Vec<_>>().join(", ");
         for (vertex, position) in self.mesh.positions().iter().enumerate() {

@@ -4,6 +4,7 @@ mod builder;
 mod damage;
 mod read;
 mod refused;
+pub mod samples;
 mod validator;
 mod write;
 

@@ -1,0 +1,5 @@
+//! Models: .glb, chunks.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| texbake_fuzz::models::assert_gltf("glb", data));

@@ -1,0 +1,5 @@
+//! Height maps: BMP.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| texbake_fuzz::maps::assert_heights("bmp", data));

@@ -1,0 +1,5 @@
+//! Masks of blends, of any format.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| texbake_fuzz::maps::assert_mask(data));

@@ -1,0 +1,5 @@
+//! Normal maps: TIFF, by every option.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| texbake_fuzz::maps::assert_normals("tif", data));
