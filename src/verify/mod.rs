@@ -34,7 +34,5 @@ pub use agreement::{Agreement, Bound, Errors};
 pub use html::Page;
 #[cfg(feature = "gpu")]
 pub use own_kernel::{Binding, KernelComparison, OwnKernel, Tolerance, WordMismatch, Work};
-#[cfg(feature = "gpu")]
-pub use page::Page;
 pub use report::{Comparison, DeviceReport, Mismatch, Report};
 pub use subject::{Options, Progress, Subject};
