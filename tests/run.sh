@@ -220,6 +220,17 @@ fetch_models() {
     echo "$TEXBAKE_MODELS"
 }
 
+# The tests of full disks need one of their own, which a namespace gives; where the system forbids it, they say so.
+require_mounts() {
+    local mount='mount -t tmpfs -o size=16k tmpfs /mnt'
+    if unshare -m sh -c "$mount" 2> /dev/null || unshare -rm sh -c "$mount" 2> /dev/null; then
+        export TEXBAKE_REQUIRE_MOUNTS=1
+        echo "a process may mount"
+    else
+        echo "no process may mount here: full disks are not tested"
+    fi
+}
+
 # Without cargo-deny (its build takes minutes, so it is not installed here): every dependency offers one of the licences that deny.toml allows.
 check_licences() {
     local allowed others
@@ -258,6 +269,7 @@ check "browser" find_browser
 check "materials" fetch_materials
 check "glTF validator" fetch_validator
 check "models" fetch_models
+check "mounts" require_mounts
 check "formatting" cargo fmt --check
 check "lints" cargo clippy --release --all-targets -- -D warnings
 check "lints without the gpu feature" cargo clippy --release --no-default-features --features cli -- -D warnings

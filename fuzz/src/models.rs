@@ -8,7 +8,7 @@ use texbake::io::{Model, ModelReadOptions};
 use texbake::{Baker, Error, Mesh, TangentMethod, TangentOptions};
 
 /// The most bytes of a model's files, and of an attribute.
-const MAX_BYTES: u64 = 1 << 20;
+const MAX_BYTES: u64 = 8 << 20;
 
 /// What a model, its meshes and their tangents may take.
 const HELD_BYTES: usize = 128 << 20;

@@ -136,6 +136,9 @@ impl ParallaxSidecar {
     /// # Errors
     /// [`Error::File`]; [`Error::Io`] if what is there cannot be read.
     pub fn check_place(path: &Path) -> Result<()> {
+        if std::fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir()) {
+            return Err(Error::file(path, "it is a device or a pipe", "give the output another name"));
+        }
         let bytes = match std::fs::read(path) {
             Ok(bytes) => bytes,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),

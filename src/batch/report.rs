@@ -5,10 +5,11 @@ use super::targets::{self, Files};
 use super::{Job, MapKind, Outcome};
 use crate::baker::{Baker, Ran};
 use crate::error::{Error, Result};
-use crate::io::replace::Replacement;
+use crate::io::replace::{Replacement, open_stream};
 use crate::map::Size;
 use crate::ops::bake::BakeOptions;
 use serde::{Serialize, Serializer};
+use std::fs::File;
 use std::io::Write;
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
@@ -210,19 +211,31 @@ impl Report {
 /// A JSON file about jobs. It is opened before the run, since a long one shall not end without its report.
 pub struct JsonFile {
     path: PathBuf,
-    file: Replacement,
+    place: JsonPlace,
+}
+
+/// Where JSON goes.
+enum JsonPlace {
+    File(Replacement),
+    /// A device or a pipe, such as `/dev/stdout`.
+    Stream(File),
 }
 
 impl JsonFile {
     /// Opens a file about `jobs`, `what` in words: the report, say. Its folders are created, and it appears under its
-    /// name when it is complete.
+    /// name when it is complete. A device or a pipe, such as `/dev/stdout`, is written as it is.
     ///
     /// # Errors
     /// [`Error::File`] if it is the input or output of a job or the settings file, or cannot be replaced; [`Error::Io`].
     pub fn create(what: &str, path: &Path, jobs: &[Files<'_>], settings: Option<&Path>) -> Result<Self> {
         targets::check_report(what, path, jobs, settings)?;
         std::fs::create_dir_all(path.parent().unwrap_or(Path::new(""))).map_err(Error::io(path))?;
-        Ok(Self { path: path.into(), file: Replacement::create(path)? })
+        let is_stream = std::fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir());
+        let place = match is_stream {
+            true => JsonPlace::Stream(open_stream(path)?),
+            false => JsonPlace::File(Replacement::create(path)?),
+        };
+        Ok(Self { path: path.into(), place })
     }
 
     /// Writes `content` and closes the file.
@@ -232,8 +245,13 @@ impl JsonFile {
     pub fn write(self, content: &impl Serialize) -> Result<()> {
         let mut json = serde_json::to_vec_pretty(content).map_err(|error| Error::io(&self.path)(error.into()))?;
         json.push(b'\n');
-        self.file.output()?.write_all(&json).map_err(Error::io(&self.path))?;
-        self.file.commit()
+        match self.place {
+            JsonPlace::File(file) => {
+                file.output()?.write_all(&json).map_err(Error::io(&self.path))?;
+                file.commit()
+            }
+            JsonPlace::Stream(mut stream) => stream.write_all(&json).map_err(Error::io(&self.path)),
+        }
     }
 }
 

@@ -27,6 +27,9 @@ struct Override {
 
 const NAME: &str = "texbake.toml";
 
+/// The most bytes of a settings file: thousands of overrides. One may lie in a folder that somebody else made.
+const MOST_BYTES: u64 = 1 << 20;
+
 impl Config {
     /// Reads `given`, or the settings file in the first folder of `paths`, or the one in the current folder, or none.
     ///
@@ -37,7 +40,13 @@ impl Config {
         let usual = first_folder.map(|folder| folder.join(NAME)).into_iter().chain([PathBuf::from(NAME)]);
         let path = given.map(Path::to_owned).or_else(|| usual.into_iter().find(|path| path.is_file()));
         let Some(path) = path else { return Ok(None) };
-        let text = std::fs::read_to_string(&path).map_err(|source| Error::Io { path: path.clone(), source })?;
+        let io = |source| Error::Io { path: path.clone(), source };
+        let bytes = std::fs::metadata(&path).map_err(io)?.len();
+        if bytes > MOST_BYTES {
+            let reason = format!("it has {bytes} bytes: settings have at most {MOST_BYTES}");
+            return Err(Error::File { path, reason, remedy: "is it another file?".into() });
+        }
+        let text = std::fs::read_to_string(&path).map_err(io)?;
         Self::parse(&path, &text).map(Some)
     }
 

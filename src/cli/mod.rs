@@ -22,12 +22,14 @@ use args::{Arguments, Command};
 use clap::Parser;
 use exit::Exit;
 use std::process::ExitCode;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
 use texbake::stream::Monitor;
 
 /// Does what the arguments say.
 pub fn run() -> ExitCode {
     let arguments = Arguments::parse();
+    survive_large_files();
     let done = match &arguments.command {
         Command::Normal(arguments) => normal::normal(arguments),
         Command::Parallax(arguments) => parallax::parallax(arguments),
@@ -43,7 +45,29 @@ pub fn run() -> ExitCode {
         print::say(format_args!("error: {failure}"));
         failure.exit()
     });
-    exit.into()
+    finish_saying();
+    match exit {
+        Exit::Success if print::is_lost() => Exit::Failed.into(),
+        exit => exit.into(),
+    }
+}
+
+/// Makes a file that grows beyond the limit on sizes (`ulimit -f`) an error of writing it, not the end of the program.
+fn survive_large_files() {
+    #[cfg(unix)]
+    {
+        use signal_hook::{consts::SIGXFSZ, flag};
+        // Whatever handles the signal; if nothing can, the program ends as others do.
+        let _ = flag::register(SIGXFSZ, Arc::default());
+    }
+}
+
+/// What an interrupt says, on a thread of its own: while nobody reads stderr, a second one must still be heard.
+static SAYING: Mutex<Option<JoinHandle<()>>> = Mutex::new(None);
+
+fn finish_saying() {
+    let saying = SAYING.lock().unwrap_or_else(PoisonError::into_inner).take();
+    saying.map(JoinHandle::join);
 }
 
 /// A monitor that an interrupt cancels: files that are being written end cleanly. A second interrupt ends the program.
@@ -52,13 +76,24 @@ fn interruptible() -> Arc<Monitor> {
     let watched = monitor.clone();
     let stop = move || {
         if watched.is_cancelled() {
-            std::process::exit(Exit::Interrupted.code().into());
+            end_at_once();
         }
+        let text = "interrupted: what is being written is dropped; interrupt again to end at once";
+        let mut saying = SAYING.lock().unwrap_or_else(PoisonError::into_inner);
         watched.cancel();
-        print::say("interrupted: what is being written is dropped; interrupt again to end at once");
+        *saying = std::thread::Builder::new().name("interrupt".into()).spawn(move || print::say(text)).ok();
     };
     if let Err(error) = ctrlc::set_handler(stop) {
         print::say(format_args!("warning: an interrupt will not end cleanly: {error}"));
     }
     monitor
+}
+
+/// Ends the program without the drivers' and libraries' own endings, which may wait for what hangs.
+fn end_at_once() -> ! {
+    let status = Exit::Interrupted.code().into();
+    #[cfg(unix)]
+    signal_hook::low_level::exit(status);
+    #[cfg(not(unix))]
+    std::process::exit(status)
 }

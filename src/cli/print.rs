@@ -2,13 +2,14 @@
 
 use comfy_table::{CellAlignment, Table, presets};
 use std::cmp::Reverse;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use texbake::batch::{
     BlendJob, BlendOutcome, FileResult, Job, ModelTangents, Outcome, ParallaxNumbers, TangentJob, Totals,
     describe_codes,
 };
 use texbake::verify::{Agreement, Bound, Comparison, Errors};
-use texbake::{Baked, Baker, Device, HeightType, NormalFormat, Ran, Scale, Size};
+use texbake::{Baked, Baker, Device, Error, HeightType, NormalFormat, Ran, Scale, Size};
 
 /// Longer folders get a table of what was not baked, and of the slowest.
 const TABLE_ROWS: usize = 40;
@@ -19,9 +20,26 @@ pub fn say(line: impl std::fmt::Display) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
-/// Text on stdout.
+/// Whether a text did not get through stdout.
+static LOST: AtomicBool = AtomicBool::new(false);
+
+/// Text on stdout. Nobody may be listening, but a disk that is full is told, and remembered for [`is_lost`].
 pub fn put(text: impl std::fmt::Display) {
-    let _ = writeln!(std::io::stdout().lock(), "{text}");
+    let mut stdout = std::io::stdout().lock();
+    let written = writeln!(stdout, "{text}").and_then(|()| stdout.flush());
+    if let Err(source) =
+        written.or_else(|error| if error.kind() == ErrorKind::BrokenPipe { Ok(()) } else { Err(error) })
+    {
+        let path = "standard output".into();
+        if !LOST.swap(true, Relaxed) {
+            say(format_args!("error: {}", Error::Io { path, source }));
+        }
+    }
+}
+
+/// Whether [`put`] failed.
+pub fn is_lost() -> bool {
+    LOST.load(Relaxed)
 }
 
 /// What became of one file of a folder.

@@ -48,7 +48,8 @@ pub fn bake_one(job: Job, telling: &ParallaxTelling<'_>, reporting: &Reporting) 
     }
     // A sidecar that cannot be written is no reason to go without the report.
     if let Some((file, numbers)) = sidecar.zip(numbers.as_ref()) {
-        file.write(numbers)?;
+        // Without its own numbers, the new map shall not have those of the old one.
+        file.write(numbers).inspect_err(|_| _ = telling.sidecar.map(std::fs::remove_file))?;
     }
     Ok(match report.totals {
         totals if totals.baked == 1 => Exit::Success,

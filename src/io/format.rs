@@ -1,9 +1,9 @@
 //! File formats: by their first bytes, and by their extension.
 
+use super::input;
 use crate::error::{Error, Result};
 use crate::map::{Depth, Encoding, ParallaxFormat};
 use image::ImageFormat;
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -39,7 +39,7 @@ impl FileFormat {
     /// The format of an existing file, by its first bytes, then by its extension.
     pub fn of_file(path: &Path) -> Result<Self> {
         let mut first = Vec::new();
-        let file = File::open(path).map_err(Error::io(path))?;
+        let file = input::open(path)?;
         file.take(16).read_to_end(&mut first).map_err(Error::io(path))?;
         if first.is_empty() {
             return Err(Error::file(path, "the file is empty", "copy or export it again"));

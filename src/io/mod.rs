@@ -2,8 +2,15 @@
 //!
 //! A file's rows pass three steps, one module each: a decoder gives interleaved samples (`samples`), `channel`
 //! picks the height of each texel or `normal` its components, and `srgb` undoes a wrong colour space of heights where
-//! that was asked for. Decoders hold a row, a strip or a block at a time where the format allows it. Writers go through
-//! `replace`, so that a name never stands for half a file.
+//! that was asked for. Decoders hold a row, a strip or a block at a time where the format allows it.
+//!
+//! Nothing is lost: writers go through `replace`, so that a name stands for the old file or for the complete new one at
+//! any moment, whatever ends the process; after a loss of power too, since bytes are on the disk before they get a name.
+//! What a killed process leaves, `temporary` removes. Models of several files are replaced in an order of which every
+//! state is a whole model (`gltf::write`). Readers go through `input`: a file that changes before its last row is read
+//! is an error, and so are pipes and devices, which are not waited for. Not covered: that several maps of a texture, or
+//! a map and its sidecar, get their names in the same instant; and folders that several machines write into at once
+//! over a network without common locks.
 
 mod channel;
 mod damage;
@@ -11,6 +18,7 @@ mod exr;
 mod format;
 mod gltf;
 mod groups;
+mod input;
 mod limits;
 mod normal;
 mod obj;
@@ -36,6 +44,7 @@ use crate::map::{
 use crate::stream::{NormalSource, RowSource, RowsOut, read_map, read_normals};
 use channel::HeightRows;
 use format::{FileFormat, OutputFormat};
+use input::Found;
 use normal::NormalRows;
 use samples::Opened;
 use std::io::Write;
@@ -141,12 +150,15 @@ pub fn replace_file(path: &Path, content: &[u8]) -> Result<()> {
 /// # Errors
 /// [`crate::Error::TooLarge`] if decoding needs more than [`ReadOptions::max_bytes`] at once, before anything is
 /// allocated; [`crate::Error::File`] for what is wrong with the file or with its channels; [`crate::Error::Io`].
-/// Damage further down, channels that differ and [`crate::Error::NotFinite`] heights are reported by the row reader.
+/// Damage further down, channels that differ, [`crate::Error::NotFinite`] heights and a file that changed since are
+/// reported by the row reader.
 pub fn open_heights(path: &Path, options: &ReadOptions) -> Result<HeightFile> {
+    let found = Found::at(path)?;
     let opened = match options.raw {
-        Some(layout) => raw::open(path, layout)?,
-        None => open_samples(path, exr::Wanted::Heights(options.channel.as_ref()), options.max_bytes)?,
+        Some(layout) => raw::open(path, layout),
+        None => open_samples(path, exr::Wanted::Heights(options.channel.as_ref()), options.max_bytes),
     };
+    let opened = found.watch(opened)?;
     let (rows, warnings) = HeightRows::new(path, opened, options)?;
     Ok(HeightFile { rows: Box::new(rows), warnings })
 }
@@ -181,7 +193,8 @@ pub fn open_heights(path: &Path, options: &ReadOptions) -> Result<HeightFile> {
 /// [`crate::Error::Parameter`] if the file's samples cannot have the encoding; [`crate::Error::File`] if its channels
 /// are none of a normal map's; else as [`open_heights`].
 pub fn open_normals(path: &Path, options: &NormalReadOptions) -> Result<NormalFile> {
-    let opened = open_samples(path, exr::Wanted::Normals(options.channels), options.max_bytes)?;
+    let found = Found::at(path)?;
+    let opened = found.watch(open_samples(path, exr::Wanted::Normals(options.channels), options.max_bytes))?;
     let srgb = opened.says_srgb.then(|| normal::SRGB_WARNING.into());
     let (rows, warnings) = NormalRows::new(path, opened, options)?;
     Ok(NormalFile { rows: Box::new(rows), warnings, srgb })

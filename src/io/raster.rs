@@ -1,8 +1,8 @@
 //! TGA, BMP, JPEG and WebP: 8-bit formats that are decoded whole.
 
-use super::damage::{damaged, truncated};
+use super::damage::{damaged, io_reason, truncated};
 use super::samples::{DecodedWhole, Layout, Opened, Samples};
-use super::{limits, srgb};
+use super::{input, limits, srgb};
 use crate::error::{Error, Result};
 use crate::map::HeightType;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
@@ -12,7 +12,7 @@ use std::path::Path;
 
 /// Opens and decodes a file.
 pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<Opened> {
-    let file = File::open(path).map_err(Error::io(path))?;
+    let file = input::open(path)?;
     // The decoders of these two hold the stored bytes, and read them before anything else can be asked.
     let is_held = matches!(format, ImageFormat::Jpeg | ImageFormat::WebP);
     let held = if is_held { file.metadata().map_err(Error::io(path))?.len() } else { 0 };
@@ -104,8 +104,7 @@ fn webp_is_lossy(file: &mut BufReader<File>) -> io::Result<bool> {
 /// The decoder's reason, with the file and the way out.
 fn reason(path: &Path) -> impl FnOnce(ImageError) -> Error + '_ {
     move |error| match error {
-        ImageError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => truncated(path),
-        ImageError::IoError(error) => Error::io(path)(error),
+        ImageError::IoError(error) => io_reason(path, error),
         ImageError::Limits(error) => Error::file(path, error, "raise the limit with --max-bytes"),
         ImageError::Unsupported(error) => Error::file(path, error, "convert it to PNG"),
         error => damaged(path, error),

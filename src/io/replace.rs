@@ -16,7 +16,10 @@ use tempfile::NamedTempFile;
 /// A file beside its target, to take the target's place; dropped before that, it is removed.
 pub(crate) struct Replacement {
     temporary: NamedTempFile,
+    /// The file as the user names it.
     target: PathBuf,
+    /// Where it is, links aside.
+    place: PathBuf,
     failure: Failure,
 }
 
@@ -38,12 +41,12 @@ impl Replacement {
     /// If the folder does not take files, or `target` is a folder or read-only: sooner than after a long bake.
     pub fn create(target: &Path) -> Result<Self> {
         // A link keeps its place and its target is replaced.
-        let target = fs::canonicalize(target).unwrap_or_else(|_| target.into());
-        let existing = match fs::metadata(&target) {
+        let place = fs::canonicalize(target).unwrap_or_else(|_| target.into());
+        let existing = match fs::metadata(&place) {
             Ok(existing) => Some(existing),
             Err(error) if error.kind() == ErrorKind::NotFound => None,
             // A name that is too long, a circle of links: better told now than after the bake.
-            Err(error) => return Err(Error::io(&target)(error)),
+            Err(error) => return Err(Error::io(target)(error)),
         };
         if let Some(existing) = &existing {
             if existing.is_dir() {
@@ -56,18 +59,18 @@ impl Replacement {
                 return Err(Error::file(target, "it is read-only", "make it writable, or write elsewhere"));
             }
         }
-        let folder = match target.parent() {
+        let folder = match place.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
         let temporary = temporary::create(folder).map_err(|source| {
             // The user knows the target, not the temporary file's name.
-            Error::io(&target)(io::Error::new(source.kind(), system_reason(&source)))
+            Error::io(target)(io::Error::new(source.kind(), system_reason(&source)))
         })?;
         if let Some(existing) = existing {
-            temporary.as_file().set_permissions(existing.permissions()).map_err(Error::io(&target))?;
+            temporary.as_file().set_permissions(existing.permissions()).map_err(Error::io(target))?;
         }
-        Ok(Self { temporary, target, failure: Failure::default() })
+        Ok(Self { temporary, target: target.into(), place, failure: Failure::default() })
     }
 
     /// The file, to write.
@@ -97,13 +100,50 @@ impl Replacement {
     /// Brings the bytes to the disk, then gives the file its name.
     pub fn commit(self) -> Result<()> {
         self.sync()?;
-        let Self { temporary, target, .. } = self;
-        temporary.persist(&target).map_err(|failed| match failed.error.kind() {
+        let Self { temporary, target, place, .. } = self;
+        temporary.persist(place).map_err(|failed| match failed.error.kind() {
             ErrorKind::NotFound => Error::file(&target, "its folder went while it was written", "run it again"),
             _ => Error::io(&target)(failed.error),
         })?;
         Ok(())
     }
+}
+
+/// A change to a folder's files.
+pub(crate) enum Step {
+    /// A complete file gets its name.
+    Place(Replacement),
+    /// A file that nothing needs any more goes.
+    Remove(PathBuf),
+}
+
+impl Step {
+    /// What it is about.
+    #[cfg(test)]
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Place(file) => &file.target,
+            Self::Remove(path) => path,
+        }
+    }
+
+    pub fn take(self) -> Result<()> {
+        match self {
+            Self::Place(file) => file.commit(),
+            Self::Remove(path) => {
+                // What cannot be removed does no harm.
+                let _ = fs::remove_file(path);
+                Ok(())
+            }
+        }
+    }
+}
+
+/// Takes steps in their order; the first one waits until all files are on the disk.
+pub(crate) fn take(steps: Vec<Step>) -> Result<()> {
+    let files = steps.iter().filter_map(|step| if let Step::Place(file) = step { Some(file) } else { None });
+    files.into_iter().try_for_each(Replacement::sync)?;
+    steps.into_iter().try_for_each(Step::take)
 }
 
 impl Output {
@@ -133,6 +173,30 @@ impl Seek for Output {
         let result = self.file.seek(position);
         self.remember(result)
     }
+}
+
+/// What is no file, a device or a pipe, opened to be written as it is.
+///
+/// # Errors
+/// [`Error::File`] for a pipe that nobody reads; it is not waited for. [`Error::Io`].
+pub(crate) fn open_stream(path: &Path) -> Result<File> {
+    let mut options = File::options();
+    options.write(true);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::OpenOptionsExt;
+        let unread = |error: io::Error| match error.raw_os_error() {
+            Some(libc::ENXIO) => {
+                Error::file(path, "it is a pipe that nobody reads", "start what reads it first, or name a file")
+            }
+            _ => Error::io(path)(error),
+        };
+        // Held open, so that there is no waiting below.
+        let _reader = File::options().write(true).custom_flags(libc::O_NONBLOCK).open(path).map_err(unread)?;
+        options.open(path).map_err(Error::io(path))
+    }
+    #[cfg(not(unix))]
+    options.open(path).map_err(Error::io(path))
 }
 
 /// The system's words for an error, without the temporary file's name that `tempfile` adds.

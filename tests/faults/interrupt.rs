@@ -1,4 +1,4 @@
-//! An interrupt ends a run cleanly.
+//! An interrupt ends a run cleanly, a second one at once.
 
 use crate::cli::support::{Folder, Run, read_png};
 use crate::cli::tangents::{Model, sheet};
@@ -47,6 +47,33 @@ fn an_interrupted_folder_leaves_whole_files_and_says_what_is_missing() {
     assert_eq!(count("baked") + count("stopped") + count("not_begun"), FILES);
     let not_begun = report["files"].as_array().unwrap().iter().filter(|file| file["result"] == "not_begun");
     assert_eq!(not_begun.count(), count("not_begun"));
+}
+
+#[test]
+fn an_interrupted_folder_of_two_maps_leaves_both_of_a_texture_or_none_and_can_be_completed() {
+    const TEXTURES: usize = 150;
+    for signal in ["-INT", "-TERM"] {
+        let folder = Folder::new();
+        for index in 0..TEXTURES {
+            folder.file(&format!("tex/m{index:03}_height.raw"), vec![index as u8; 200 * 200]);
+        }
+        let arguments = ["bake", "tex", "--out", "out", "--raw", "200x200:u8", "--maps", "normal,parallax"];
+        let has_output = |_: &str| folder.files("out").iter().any(|file| file.ends_with(".png"));
+        let run = Run::from(signalled(folder.command(&arguments), signal, has_output)).ends(130);
+        let outputs = folder.files("out");
+        let textures = outputs.len() / 2;
+        for pair in outputs.chunks(2) {
+            let stem = pair[0].strip_suffix("_normal.png").unwrap_or_else(|| panic!("{outputs:?}"));
+            assert_eq!(pair[1], format!("{stem}_parallax.png"), "{outputs:?}");
+            pair.iter().for_each(|file| assert_eq!(read_png(&folder.path("out").join(file)).0, 200));
+        }
+        let summary = run.stdout.lines().last().unwrap();
+        assert!(summary.starts_with(&format!("{textures} of {TEXTURES} files baked, ")), "{summary}");
+        assert!(run.stderr.contains("interrupted: what is being written is dropped"), "{}", run.stderr);
+
+        folder.run(&[&arguments[..], &["--quiet"]].concat()).ends(0);
+        assert_eq!(folder.files("out").len(), 2 * TEXTURES);
+    }
 }
 
 #[test]
@@ -112,6 +139,23 @@ fn an_interrupted_model_leaves_nothing() {
     assert!(run.stderr.ends_with("out/m.glb was not written\n"), "{}", run.stderr);
     assert_eq!(folder.files("out"), [""; 0]);
     assert_eq!(folder.json("r.json")["result"], "stopped");
+}
+
+#[test]
+fn an_interrupted_model_leaves_the_old_one_with_its_buffer() {
+    let folder = Folder::new();
+    folder.file("small.glb", Model::new().with("sheet", &sheet(3, 3), 0).glb());
+    folder.run(&["tangents", "small.glb", "-o", "out/m.gltf"]).ends(0);
+    let read = || folder.files("out").into_iter().map(|name| std::fs::read(folder.path("out").join(name)).unwrap());
+    let before: Vec<_> = read().collect();
+    folder.file("model.glb", Model::new().with("sheet", &sheet(1200, 1200), 0).glb());
+    let command = folder.command(&["tangents", "model.glb", "-o", "out/m.gltf"]);
+    let run = Run::from(signalled(command, "-INT", listens)).ends(130);
+    assert!(run.stderr.ends_with("out/m.gltf was not written\n"), "{}", run.stderr);
+    assert_eq!(folder.files("out"), ["m.bin", "m.gltf"]);
+    assert!(read().eq(before));
+    folder.run(&["tangents", "model.glb", "-o", "out/m.gltf"]).ends(0);
+    assert_eq!(folder.files("out"), ["m.bin", "m.gltf"]);
 }
 
 #[test]

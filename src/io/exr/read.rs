@@ -2,10 +2,10 @@
 
 use super::choose::{Wanted, choose};
 use crate::error::{Error, Result};
-use crate::io::damage::{damaged, truncated};
+use crate::io::damage::{damaged, io_reason, truncated};
 use crate::io::groups::{GroupDecoder, GroupedRows};
-use crate::io::limits;
 use crate::io::samples::{Layout, Opened, Samples};
+use crate::io::{input, limits};
 use crate::map::HeightType;
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{Chunk, CompressedBlock};
@@ -15,7 +15,7 @@ use exr::meta::attribute::{ChannelDescription, SampleType};
 use exr::meta::{BlockDescription, MetaData};
 use half::f16;
 use std::fs::File;
-use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// An EXR by blocks of scan lines or rows of tiles, found through the file's own table of block offsets.
@@ -47,7 +47,7 @@ struct BlockChannel {
 
 /// Opens an EXR: half and float channels, of scan lines or tiles, of every compression that the decoder knows.
 pub(crate) fn open(path: &Path, wanted: Wanted<'_>, max_bytes: u64) -> Result<Opened> {
-    let file = File::open(path).map_err(Error::io(path))?;
+    let file = input::open(path)?;
     let file_bytes = file.metadata().map_err(Error::io(path))?.len();
     let mut file = BufReader::new(file);
     let meta = MetaData::read_from_buffered(&mut file, false).map_err(reason(path))?;
@@ -202,8 +202,7 @@ impl GroupDecoder for ExrBlocks {
 fn reason(path: &Path) -> impl FnOnce(exr::error::Error) -> Error + '_ {
     use exr::error::Error::{Io, NotSupported};
     move |error| match error {
-        Io(error) if error.kind() == ErrorKind::UnexpectedEof => truncated(path),
-        Io(error) => Error::io(path)(error),
+        Io(error) => io_reason(path, error),
         NotSupported(what) => Error::file(path, what, "export it as a flat image with ZIP compression"),
         // What the decoder says when bytes are missing.
         error if error.to_string().contains("reference to missing bytes") => truncated(path),

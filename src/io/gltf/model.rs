@@ -1,5 +1,8 @@
 //! Models: what users read, give tangents and write.
 
+#[cfg(test)]
+mod replaced;
+
 use super::document::{Document, ModelFile};
 use super::edit::{Edited, Made};
 use super::elements::Elements;
@@ -20,7 +23,8 @@ pub struct ModelReadOptions {
     /// Whether primitives without a normal map get tangents too, for their first texture coordinates (TEXCOORD_0).
     /// Primitives of an OBJ always do.
     pub all: bool,
-    /// The most bytes that the file and its buffers may take together, and one attribute of it when it is unpacked.
+    /// The most bytes that the file, its buffers and the images that go with it may take together; that the values of
+    /// its JSON may take; and that the tangents may take. An attribute that no bytes stand for may have a part of it.
     pub max_bytes: u64,
 }
 
@@ -55,6 +59,8 @@ pub struct Model {
     left_out: Vec<LeftOut>,
     warnings: Vec<String>,
     made: BTreeMap<usize, Made>,
+    /// Bytes of all that was made: vertices may be many primitives' own.
+    made_bytes: u64,
 }
 
 /// A primitive that needs tangents.
@@ -140,7 +146,7 @@ impl Model {
             .flat_map(|(geometry, places)| places.iter().map(move |place| (geometry, *place)))
             .flat_map(|(geometry, place)| primitive_doubts(&document, geometry, place));
         let warnings = document.warnings.iter().cloned().chain(doubts(&document)).chain(of_primitives).collect();
-        Ok(Self { document, geometries, primitives, left_out, warnings, made: BTreeMap::new() })
+        Ok(Self { document, geometries, primitives, left_out, warnings, made: BTreeMap::new(), made_bytes: 0 })
     }
 
     /// The primitives that need tangents, in the order of the file. Those that are the same are listed once.
@@ -183,13 +189,22 @@ impl Model {
     /// by [`Model::write`].
     ///
     /// # Errors
-    /// [`Error::Parameter`] if there is no such primitive, or the tangents are not those of its mesh.
+    /// [`Error::Parameter`] if there is no such primitive, or the tangents are not those of its mesh; [`Error::File`] if
+    /// all tangents together take more than [`ModelReadOptions::max_bytes`].
     pub fn set_tangents(&mut self, primitive: usize, tangents: Tangents) -> Result<()> {
         let (geometry, places) = self.geometry(primitive)?;
         let vertices = Elements::count(&self.document, geometry.position)
             .map_err(|error| named(&self.document, places[0], error))?;
         check(&tangents, vertices)?;
-        self.made.insert(primitive, Made { tangents, bitangents: None });
+        let (made, limit) = (Made { tangents, bitangents: None }, self.document.max_bytes);
+        let before = self.made.get(&primitive).map_or(0, Made::bytes);
+        let bytes = self.made_bytes - before + made.bytes();
+        if bytes > limit {
+            let reason = format!("the tangents of its primitives take {bytes} bytes, above the limit of {limit}");
+            return Err(self.document.error(reason, "raise it with --max-bytes, or split the model"));
+        }
+        self.made_bytes = bytes;
+        self.made.insert(primitive, made);
         Ok(())
     }
 
@@ -223,10 +238,10 @@ impl Model {
     /// A .gltf made of a .glb or an OBJ has its buffer beside it (`name.bin`); one made of a .gltf has the new data in
     /// `name_tangents.bin` beside it, or in a data URI if all its buffers are. In another folder than the one it was
     /// read from, the files that the model refers to are copied beside it; a .glb made of a .gltf or an OBJ holds its
-    /// images. Missing folders are made. Each file appears when it is complete, the model last.
+    /// images. Missing folders are made. Each file appears when it is complete, the model last; if it replaces another
+    /// model, the old one or the new one is there at any moment, with its own buffers.
     ///
-    /// A file beside the model is replaced only if it holds a buffer of the model that was read, or of the one that
-    /// is replaced.
+    /// A file beside the model is replaced only if it holds a buffer of the model that is replaced.
     ///
     /// # Errors
     /// [`Error::File`] if the extension is another, a file beside the model exists with other content, a file that the
@@ -239,12 +254,17 @@ impl Model {
     /// The same; no file appears if it is cancelled before all are complete.
     pub(crate) fn write_unless_cancelled(&self, path: &Path, monitor: &Monitor) -> Result<ModelFiles> {
         ModelFormat::of(path)?;
+        write::write(&self.document, self.edited()?, path, monitor)
+    }
+
+    /// The document with what was made for it.
+    fn edited(&self) -> Result<Edited<'_>> {
         let mut edited = Edited::new(&self.document);
         for (&primitive, made) in &self.made {
             let (geometry, places) = &self.geometries[primitive];
             edited.apply(geometry, places, made).map_err(|error| named(&self.document, places[0], error))?;
         }
-        write::write(&self.document, edited, path, monitor)
+        Ok(edited)
     }
 
     fn geometry(&self, primitive: usize) -> Result<&(Geometry, Vec<Place>)> {

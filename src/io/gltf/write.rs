@@ -1,4 +1,8 @@
 //! Documents as files: .glb, or .gltf with its buffers and images beside it.
+//!
+//! A model of several files is at any moment the old one or the new one. Where a file of the old model gets other
+//! bytes, the new model first refers to a stand-in of it, `name.texbake.bin`, then the file is replaced, then the model
+//! refers to it, and then the stand-in goes: whatever the process is killed between, the model in place has its bytes.
 
 use super::container::{BIN, JSON, MAGIC, read_file};
 use super::document::{Document, ModelFile, Origin, index};
@@ -6,7 +10,8 @@ use super::edit::{Edited, put};
 use super::model::ModelFiles;
 use super::uri::{self, Uri, file_of};
 use crate::error::{Error, Result};
-use crate::io::replace::Replacement;
+use crate::io::input;
+use crate::io::replace::{Replacement, Step, take};
 use crate::stream::Monitor;
 use serde_json::{Value, json};
 use std::borrow::Cow;
@@ -49,9 +54,21 @@ impl ModelFormat {
     }
 }
 
-/// Writes a model and, unless it stays in its folder, the files it refers to; the model itself comes last, so that
-/// it never refers to what is not yet there.
-pub(super) fn write(document: &Document, mut edited: Edited<'_>, path: &Path, monitor: &Monitor) -> Result<ModelFiles> {
+/// Writes a model and, unless it stays in its folder, the files it refers to.
+pub(super) fn write(document: &Document, edited: Edited<'_>, path: &Path, monitor: &Monitor) -> Result<ModelFiles> {
+    let (files, steps) = steps(document, edited, path, monitor)?;
+    monitor.check()?;
+    take(steps)?;
+    Ok(files)
+}
+
+/// The files of a model, complete but for their names, and the order in which they get them.
+pub(super) fn steps(
+    document: &Document,
+    mut edited: Edited<'_>,
+    path: &Path,
+    monitor: &Monitor,
+) -> Result<(ModelFiles, Vec<Step>)> {
     let mut read = document.files.clone();
     let mut files = Vec::new();
     let added = std::mem::take(&mut edited.added);
@@ -62,25 +79,57 @@ pub(super) fn write(document: &Document, mut edited: Edited<'_>, path: &Path, mo
         }
         ModelFormat::Gltf => {
             files.extend(buffer_file(document, &mut edited, added, path));
-            vec![serde_json::to_vec_pretty(&edited.json).expect("keys are strings").into()]
+            gltf(&edited.json)
         }
     };
     if !is_same_folder(&document.path, path) {
         copied_files(document, &edited.json, path, &mut files, &mut read)?;
     }
-    let buffers = [own_buffers(&document.path, &document.json), buffers_of_old_model(path)].concat();
-    files.iter().try_for_each(|file| file.check_place(&buffers))?;
-    files.push(NewFile { path: path.into(), parts: model });
-    let written = files.iter().map(NewFile::as_file).collect();
+    let old_buffers = buffers_of_old_model(path);
+    files.iter().try_for_each(|file| file.check_place(&old_buffers))?;
+    let stand_ins: Vec<NewFile> = files.iter().filter_map(|file| file.stand_in(&old_buffers)).collect();
+    let for_now = refer_to(&stand_ins, &edited.json, path);
+    let is_left = |place: &PathBuf| place.exists() && files.iter().all(|file| file.path != *place);
+    let left = files.iter().map(|file| stand_in(&file.path)).filter(is_left);
+    let obsolete: Vec<PathBuf> = left.chain(stand_ins.iter().map(|file| file.path.clone())).collect();
+
+    let model = NewFile { path: path.into(), parts: model };
+    let written = files.iter().chain([&model]).map(NewFile::as_file).collect();
+    let files = stand_ins.iter().chain(&for_now).chain(&files).chain([&model]);
     monitor.check()?;
-    for file in &files {
+    for file in files.clone() {
         let folder = file.path.parent().unwrap_or("".as_ref());
         std::fs::create_dir_all(folder).map_err(Error::io(folder))?;
     }
-    let ready = files.into_iter().map(NewFile::write).collect::<Result<Vec<_>>>()?;
-    monitor.check()?;
-    ready.into_iter().try_for_each(Replacement::commit)?;
-    Ok(ModelFiles { read, written })
+    let mut steps = files.map(|file| file.write().map(Step::Place)).collect::<Result<Vec<_>>>()?;
+    steps.extend(obsolete.into_iter().map(Step::Remove));
+    Ok((ModelFiles { read, written }, steps))
+}
+
+fn gltf(json: &Value) -> Parts<'static> {
+    vec![serde_json::to_vec_pretty(json).expect("keys are strings").into()]
+}
+
+/// What stands in for a file while it is replaced. Nothing else has such a name, so one that is left may go.
+fn stand_in(file: &Path) -> PathBuf {
+    let mut extension = OsStr::new("texbake").to_owned();
+    file.extension().into_iter().for_each(|own| extension.extend([OsStr::new("."), own]));
+    file.with_extension(extension)
+}
+
+/// The model that refers to stand-ins, if there are any.
+fn refer_to(stand_ins: &[NewFile<'_>], json: &Value, path: &Path) -> Option<NewFile<'static>> {
+    let mut json = json.clone();
+    for uri in uris_mut(&mut json).into_iter().filter(|_| !stand_ins.is_empty()) {
+        let Some(Uri::Relative(relative)) = uri.as_str().filter(|uri| !uri::is_data(uri)).map(Uri::of) else {
+            continue;
+        };
+        let place = stand_in(&file_of(path, &relative));
+        if stand_ins.iter().any(|file| file.path == place) {
+            *uri = uri::of_path(&stand_in(&relative).to_string_lossy().replace('\\', "/")).into();
+        }
+    }
+    (!stand_ins.is_empty()).then(|| NewFile { path: path.into(), parts: gltf(&json) })
 }
 
 /// The files of a model's buffers that exist.
@@ -98,7 +147,7 @@ fn buffers_of_old_model(path: &Path) -> Vec<PathBuf> {
     if ModelFormat::of(path).is_ok_and(|format| format == ModelFormat::Glb) {
         return Vec::new();
     }
-    let old = std::fs::read(path).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    let old = input::read(path, u64::MAX).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
     old.map_or_else(Vec::new, |json| own_buffers(path, &json))
 }
 
@@ -107,10 +156,15 @@ impl NewFile<'_> {
         ModelFile { path: self.path.clone(), bytes: self.parts.iter().map(|part| part.len() as u64).sum() }
     }
 
-    /// Fails if the file, which the user did not name, would replace another one than these.
-    fn check_place(&self, replaceable: &[PathBuf]) -> Result<()> {
+    /// Fails if the file, which the user did not name, would replace another one than these buffers or one that a
+    /// stand-in among them stands for.
+    fn check_place(&self, buffers: &[PathBuf]) -> Result<()> {
         let Ok(place) = std::fs::canonicalize(&self.path) else { return Ok(()) };
-        if replaceable.contains(&place) || self.is_content_of(&place) {
+        let stand_in = std::fs::canonicalize(stand_in(&self.path)).ok();
+        if buffers.contains(&place)
+            || stand_in.is_some_and(|place| buffers.contains(&place))
+            || self.is_content_of(&place)
+        {
             return Ok(());
         }
         let reason = "it belongs to the new model, and exists already with other content";
@@ -123,7 +177,14 @@ impl NewFile<'_> {
             && std::fs::read(path).is_ok_and(|bytes| bytes.iter().eq(self.parts.iter().flat_map(|part| part.iter())))
     }
 
-    fn write(self) -> Result<Replacement> {
+    /// The same bytes beside it, if it replaces one of these buffers by other bytes.
+    fn stand_in(&self, buffers: &[PathBuf]) -> Option<Self> {
+        let place = std::fs::canonicalize(&self.path).ok()?;
+        let replaces = buffers.contains(&place) && !self.is_content_of(&place);
+        replaces.then(|| Self { path: stand_in(&self.path), parts: self.parts.clone() })
+    }
+
+    fn write(&self) -> Result<Replacement> {
         let replacement = Replacement::create(&self.path)?;
         let mut output = BufWriter::new(replacement.output()?);
         let written = self.parts.iter().try_for_each(|part| output.write_all(part)).and_then(|()| output.flush());
@@ -219,7 +280,7 @@ type Image = (usize, String, Vec<u8>);
 
 /// The images in data URIs and in files; addresses stay what they are.
 fn images_of(document: &Document, read: &mut Vec<ModelFile>) -> Result<Vec<Image>> {
-    let mut images = Vec::new();
+    let (mut images, mut left) = (Vec::new(), document.max_bytes);
     for (number, image) in document.list("images").iter().enumerate() {
         let Some(uri) = image["uri"].as_str().filter(|uri| !is_url(uri)) else { continue };
         if let Uri::Data(data) = Uri::of(uri) {
@@ -228,9 +289,12 @@ fn images_of(document: &Document, read: &mut Vec<ModelFile>) -> Result<Vec<Image
             continue;
         }
         let path = file_of(&document.path, &uri::upward(uri).ok_or_else(|| not_beside(document, uri))?);
-        let bytes = read_file(&path, document.max_bytes).map_err(|error| {
-            let reason = format!("its image {uri} cannot be read: {error}");
-            document.error(reason, "put the file there, or write .gltf into the folder it came from")
+        let bytes = read_within(&path, &mut left).map_err(|error| match error {
+            Error::Io { source, .. } => document.error(
+                format!("its image {uri} cannot be read: {source}"),
+                "put the file there, or write .gltf into the folder it came from",
+            ),
+            other => other,
         })?;
         // What is no image stays where it is; above the folder that may be anything.
         let Some(type_) = image_type(&bytes, image["mimeType"].as_str(), &path) else { continue };
@@ -238,6 +302,13 @@ fn images_of(document: &Document, read: &mut Vec<ModelFile>) -> Result<Vec<Image
         images.push((number, type_, bytes));
     }
     Ok(images)
+}
+
+/// A file that goes with the model; all of them are held at once, in `left` bytes.
+fn read_within(path: &Path, left: &mut u64) -> Result<Vec<u8>> {
+    let bytes = read_file(path, *left)?;
+    *left -= bytes.len() as u64;
+    Ok(bytes)
 }
 
 /// By its first bytes; in the model's folder, else as it is called.
@@ -344,7 +415,9 @@ fn buffer_file<'a>(
     let once_used: BTreeSet<usize> = document.list("bufferViews").iter().flat_map(buffers_of).collect();
     let free = once_used.into_iter().find(|number| *number < document.buffers.len() && !used.contains(number));
     let has_files = document.buffers.iter().any(|buffer| buffer.origin == Origin::File);
-    let name = has_files.then(|| free_name(document, path, "_tangents", free));
+    // The model that was read keeps its buffers, unless it is the one that is replaced.
+    let own = free.filter(|_| matches!((path.canonicalize(), document.path.canonicalize()), (Ok(a), Ok(b)) if a == b));
+    let name = has_files.then(|| free_name(document, path, "_tangents", own));
     let uri = name.as_ref().map_or_else(|| uri::data_uri(&added), |name| uri::of_path(name));
     let buffer = json!({ "uri": uri, "byteLength": added.len() });
     if edited.json["buffers"].is_null() {
@@ -400,6 +473,7 @@ fn copied_files(
     files: &mut Vec<NewFile<'_>>,
     read: &mut Vec<ModelFile>,
 ) -> Result<()> {
+    let mut left = document.max_bytes;
     let mut uris = Vec::new();
     collect_uris(json, &mut uris);
     for text in uris {
@@ -410,9 +484,12 @@ fn copied_files(
             continue;
         }
         let source = file_of(&document.path, &relative);
-        let bytes = std::fs::read(&source).map_err(|error| {
-            let reason = format!("it refers to {uri}, which cannot be read: {error}");
-            document.error(reason, "put the file there, or write the model into the folder it came from")
+        let bytes = read_within(&source, &mut left).map_err(|error| match error {
+            Error::Io { source, .. } => document.error(
+                format!("it refers to {uri}, which cannot be read: {source}"),
+                "put the file there, or write the model into the folder it came from",
+            ),
+            other => other,
         })?;
         if !read.iter().any(|file| file.path == source) {
             read.push(ModelFile::new(&source, &bytes));
@@ -436,5 +513,17 @@ fn collect_uris<'a>(value: &'a Value, uris: &mut Vec<&'a Value>) {
             fields.iter().filter(|(name, _)| *name != "extras").for_each(|(_, item)| collect_uris(item, uris));
         }
         _ => {}
+    }
+}
+
+/// The same, to change them.
+fn uris_mut(value: &mut Value) -> Vec<&mut Value> {
+    match value {
+        Value::Array(items) => items.iter_mut().flat_map(uris_mut).collect(),
+        Value::Object(fields) => {
+            let fields = fields.iter_mut().filter(|(name, _)| *name != "extras");
+            fields.flat_map(|(name, item)| if name == "uri" { vec![item] } else { uris_mut(item) }).collect()
+        }
+        _ => Vec::new(),
     }
 }

@@ -1,13 +1,13 @@
 //! PNG height and normal maps, read.
 
 use crate::error::{Error, Result};
-use crate::io::damage::{damaged, truncated};
+use crate::io::damage::{damaged, io_reason};
 use crate::io::samples::{DecodedWhole, Layout, Opened, SampleRows, Samples, bytes_mut, len};
-use crate::io::{limits, srgb};
+use crate::io::{input, limits, srgb};
 use crate::map::{HeightType, HeightsMut};
 use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Reader, Transformations};
 use std::fs::File;
-use std::io::{BufReader, ErrorKind};
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// Compressed bytes that are read from the file at once.
@@ -48,7 +48,7 @@ pub(crate) fn open(path: &Path, max_bytes: u64) -> Result<Opened> {
 
 /// Reads up to the first row; nothing is allocated before the header's claims are checked.
 fn start(path: &Path, max_bytes: u64) -> Result<(Reader<BufReader<File>>, Layout)> {
-    let file = File::open(path).map_err(Error::io(path))?;
+    let file = input::open(path)?;
     let stored = file.metadata().map_err(Error::io(path))?.len();
     let mut decoder = Decoder::new(BufReader::with_capacity(READ_BYTES, file));
     decoder.set_transformations(Transformations::EXPAND);
@@ -104,8 +104,11 @@ impl SampleRows for PngRows {
     /// Deflate has no entry points: to go back is to begin again, to go on is to decode.
     fn seek(&mut self, row: usize) -> Result<()> {
         if row < self.next_row {
-            (self.reader, _) = start(&self.path, self.max_bytes)?;
-            self.next_row = 0;
+            let (reader, layout) = start(&self.path, self.max_bytes)?;
+            if layout != self.layout {
+                return Err(damaged(&self.path, "it is another map than a moment ago"));
+            }
+            (self.reader, self.next_row) = (reader, 0);
         }
         let mut skipped = vec![0; self.layout.row_bytes()];
         while self.next_row < row {
@@ -130,8 +133,7 @@ fn to_native_order(samples: HeightsMut<'_>) {
 /// The decoder's reason, with the file and the way out.
 fn reason(path: &Path) -> impl FnOnce(DecodingError) -> Error + '_ {
     move |error| match error {
-        DecodingError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => truncated(path),
-        DecodingError::IoError(error) => Error::io(path)(error),
+        DecodingError::IoError(error) => io_reason(path, error),
         DecodingError::LimitsExceeded => damaged(path, "it needs too much memory beside its rows"),
         error => damaged(path, error),
     }
