@@ -65,7 +65,8 @@ async function openGpu(kernels) {
         );
     }
     const device = await adapter.requestDevice();
-    const gpu = { adapter, device, lost: null, kernels, modules: new Map(), pipelines: new Map(), compiled: [] };
+    const info = adapter.info ?? {};
+    const gpu = { adapter, info, device, lost: null, kernels, modules: new Map(), pipelines: new Map(), compiled: [] };
     gpu.loss = device.lost.then(({ reason, message }) => {
         gpu.lost = `The device was lost: ${message || reason}`;
         throw new Error(gpu.lost);
@@ -397,7 +398,7 @@ function reportOf(notes, gpu, results, milliseconds) {
         passed: counts.agree === counts.cases && counts.values > 0,
         ...counts,
         browser: navigator.userAgent,
-        adapter: gpu.adapter ? wordsForAdapter(gpu.adapter.info) : null,
+        adapter: gpu.adapter ? wordsForAdapter(gpu.info) : null,
         unusable: gpu.unusable ?? null,
         seconds: Math.round(milliseconds) / 1000,
         limits: gpu.device ? limitsOf(gpu.device) : {},
@@ -543,7 +544,7 @@ function wordsForError(unit, error) {
 function showDevice(notes, gpu) {
     const facts = [...notes, ["browser", navigator.userAgent]];
     if (gpu.adapter) {
-        const { vendor, architecture, device, description, isFallbackAdapter } = gpu.adapter.info;
+        const { vendor, architecture, device, description, isFallbackAdapter } = gpu.info;
         facts.push(
             ["vendor", vendor || "not told by the browser"],
             ["architecture", architecture || "not told by the browser"],
