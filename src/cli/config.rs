@@ -5,6 +5,8 @@
 use super::args::PerFile;
 use clap::{Args, Command, FromArgMatches};
 use globset::{GlobBuilder, GlobMatcher};
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use texbake::{Error, Result};
 use toml::Spanned;
@@ -41,12 +43,13 @@ impl Config {
         let path = given.map(Path::to_owned).or_else(|| usual.into_iter().find(|path| path.is_file()));
         let Some(path) = path else { return Ok(None) };
         let io = |source| Error::Io { path: path.clone(), source };
-        let bytes = std::fs::metadata(&path).map_err(io)?.len();
-        if bytes > MOST_BYTES {
-            let reason = format!("it has {bytes} bytes: settings have at most {MOST_BYTES}");
+        let mut bytes = Vec::new();
+        // What is no file may have no end.
+        File::open(&path).and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes)).map_err(io)?;
+        if bytes.len() as u64 > MOST_BYTES {
+            let reason = format!("settings have at most {MOST_BYTES} bytes, and it has more");
             return Err(Error::File { path, reason, remedy: "is it another file?".into() });
         }
-        let bytes = std::fs::read(&path).map_err(io)?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let valid = error.utf8_error().valid_up_to();
             let text = String::from_utf8_lossy(error.as_bytes());

@@ -103,7 +103,7 @@ impl Subject {
     /// of a difference the simplest inputs that show it are searched.
     ///
     /// The twin gives the words of each [`Binding::ReadWrite`] buffer, in their order, after the work is done. Buffers
-    /// keep their lengths while inputs are simplified.
+    /// keep their lengths while inputs are simplified; a twin that knows no answer for simpler ones gives no buffers.
     ///
     /// # Errors
     /// [`Error::Parameter`] if there is not a buffer for each binding, or the twin gives others than the kernel may
