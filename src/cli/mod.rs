@@ -22,8 +22,7 @@ use args::{Arguments, Command};
 use clap::Parser;
 use exit::Exit;
 use std::process::ExitCode;
-use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::JoinHandle;
+use std::sync::Arc;
 use texbake::stream::Monitor;
 
 /// Does what the arguments say.
@@ -45,7 +44,7 @@ pub fn run() -> ExitCode {
         print::say(format_args!("error: {failure}"));
         failure.exit()
     });
-    finish_saying();
+    print::finish_announcement();
     match exit {
         Exit::Success if print::is_lost() => Exit::Failed.into(),
         exit => exit.into(),
@@ -62,14 +61,6 @@ fn survive_large_files() {
     }
 }
 
-/// What an interrupt says, on a thread of its own: while nobody reads stderr, a second one must still be heard.
-static SAYING: Mutex<Option<JoinHandle<()>>> = Mutex::new(None);
-
-fn finish_saying() {
-    let saying = SAYING.lock().unwrap_or_else(PoisonError::into_inner).take();
-    saying.map(JoinHandle::join);
-}
-
 /// A monitor that an interrupt cancels: files that are being written end cleanly. A second interrupt ends the program.
 fn interruptible() -> Arc<Monitor> {
     let monitor = Arc::new(Monitor::default());
@@ -79,9 +70,7 @@ fn interruptible() -> Arc<Monitor> {
             end_at_once();
         }
         let text = "interrupted: what is being written is dropped; interrupt again to end at once";
-        let mut saying = SAYING.lock().unwrap_or_else(PoisonError::into_inner);
-        watched.cancel();
-        *saying = std::thread::Builder::new().name("interrupt".into()).spawn(move || print::say(text)).ok();
+        print::announce(text, || watched.cancel());
     };
     if let Err(error) = ctrlc::set_handler(stop) {
         print::say(format_args!("warning: an interrupt will not end cleanly: {error}"));

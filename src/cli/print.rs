@@ -4,6 +4,8 @@ use comfy_table::{CellAlignment, Table, presets};
 use std::cmp::Reverse;
 use std::io::{ErrorKind, Write};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
+use std::thread::JoinHandle;
 use texbake::batch::{
     BlendJob, BlendOutcome, FileResult, Job, ModelTangents, Outcome, ParallaxNumbers, TangentJob, Totals,
     describe_codes,
@@ -17,7 +19,28 @@ const SLOWEST: usize = 10;
 
 /// A line on stderr. Nobody may be listening, which is no reason to stop.
 pub fn say(line: impl std::fmt::Display) {
+    finish_announcement();
+    write(line);
+}
+
+fn write(line: impl std::fmt::Display) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
+}
+
+static ANNOUNCEMENT: Mutex<Option<JoinHandle<()>>> = Mutex::new(None);
+
+/// Does `work`, and says a line before anything else that is said because of it. Where nobody reads stderr, it is
+/// not waited for: a second interrupt must still be heard.
+pub fn announce(line: &'static str, work: impl FnOnce()) {
+    let mut announcement = ANNOUNCEMENT.lock().unwrap_or_else(PoisonError::into_inner);
+    work();
+    *announcement = std::thread::Builder::new().name("interrupt".into()).spawn(move || write(line)).ok();
+}
+
+/// Waits until what was announced is said.
+pub fn finish_announcement() {
+    let announcement = ANNOUNCEMENT.lock().unwrap_or_else(PoisonError::into_inner).take();
+    announcement.map(JoinHandle::join);
 }
 
 /// Whether a text did not get through stdout.

@@ -78,6 +78,7 @@ fn a_full_disk_is_an_error_for_every_format() {
                 assert_eq!(std::fs::read(folder.path("after").join(name)).unwrap(), b"the map of before");
             }
         }
+        std::fs::remove_file(folder.path("before").join(name)).unwrap();
     }
     // The same where there is room.
     if let Some(run) = run_on_disk(&folder, "size=4m", &["normal", "h.png", "-o", "disk/n.png", "--scale", "9"]) {
