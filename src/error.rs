@@ -1,5 +1,6 @@
 //! One error type, by cause.
 
+use std::borrow::Cow;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
@@ -74,7 +75,7 @@ pub enum Error {
     },
 
     /// A file was read, but it holds no map that can be used as it was asked.
-    #[error("{}: {reason}; {remedy}", path.display())]
+    #[error("{}: {}; {remedy}", path.display(), plain(reason))]
     File {
         /// The file.
         path: PathBuf,
@@ -85,7 +86,7 @@ pub enum Error {
     },
 
     /// A file can be read in several ways, or not in the one that was asked for: an option decides.
-    #[error("{}: {reason}; {remedy} --{option} {values}", path.display())]
+    #[error("{}: {}; {remedy} --{option} {values}", path.display(), plain(reason))]
     Unclear {
         /// The file.
         path: PathBuf,
@@ -151,6 +152,15 @@ fn remedy(error: &std::io::Error) -> &'static str {
         ErrorKind::InvalidFilename => "; choose a shorter or plainer name",
         _ => "",
     }
+}
+
+/// Text on one line: names in a file may hold what moves a terminal's cursor.
+pub(crate) fn plain(text: &str) -> Cow<'_, str> {
+    if !text.contains(char::is_control) {
+        return text.into();
+    }
+    let escaped = |letter: char| if letter.is_control() { letter.escape_default().to_string() } else { letter.into() };
+    text.chars().map(escaped).collect::<String>().into()
 }
 
 impl Error {

@@ -50,7 +50,7 @@ packages=(
     gcc g++ libc6-dev # g++ for meshopt, beside which tangents are measured
     libvulkan1 mesa-vulkan-drivers
     libegl1 libgles2 libgl1-mesa-dri
-    chromium-common # SwiftShader's Vulkan driver, without the browser
+    chromium # the page of `texbake verify --html`, and SwiftShader's Vulkan driver
 )
 # The Khronos validator of glTF. Some systems have npm in the package of node.
 if ! command -v node > /dev/null || ! command -v npm > /dev/null; then
@@ -111,6 +111,17 @@ choose_software_devices() {
     # A device that is missing is a failure, not a test passed over.
     export TEXBAKE_REQUIRE_GPU=1
     [ -n "$lavapipe" ] && [ -n "$swiftshader" ] && [ -n "$mesa" ]
+}
+
+# The browser that runs the page of `texbake verify --html`: a second WGSL compiler and WebGPU implementation.
+find_browser() {
+    local name
+    # A browser that is missing is a failure, not a test passed over.
+    export TEXBAKE_REQUIRE_BROWSER=1
+    for name in "${TEXBAKE_CHROMIUM:-chromium}" chromium-browser google-chrome; do
+        command -v "$name" && return 0
+    done
+    return 1
 }
 
 # The maps of real materials, from the source package of pypbr on PyPI: fetched once, kept with the build, never in git.
@@ -254,6 +265,7 @@ fi
 
 check "packages" install_packages
 check "software devices" choose_software_devices
+check "browser" find_browser
 check "materials" fetch_materials
 check "glTF validator" fetch_validator
 check "models" fetch_models

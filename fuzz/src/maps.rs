@@ -269,8 +269,7 @@ pub fn assert_mask(data: &[u8]) {
         NormalMap::new(size, NormalFormat::default(), Codes::U8(texel.repeat(size.texels()))).expect("a map")
     };
     let (base, detail) = (plane([128, 128, 255]), plane([200, 90, 220]));
-    let blend =
-        BlendOptions { method: BlendMethod::Weighted { base: 1.into(), detail: 1.into() }, ..Default::default() };
+    let blend = BlendOptions { method: BlendMethod::Masked, ..Default::default() };
     let inputs = BlendInputs { base: &base, detail: &detail, mask: Some(&mask) };
     let whole = Baker::reference().blend(&inputs, &blend);
     let vectorised = Baker::cpu().blend(&inputs, &blend);

@@ -8,7 +8,7 @@ use texbake::io::{Model, ModelReadOptions};
 use texbake::{Baker, Error, Mesh, TangentMethod, TangentOptions};
 
 /// The most bytes of a model's files, and of an attribute.
-const MAX_BYTES: u64 = 1 << 20;
+const MAX_BYTES: u64 = 8 << 20;
 
 /// What a model, its meshes and their tangents may take.
 const HELD_BYTES: usize = 128 << 20;
@@ -66,11 +66,10 @@ fn converted(source: &Path, choice: usize) -> Result<(), Error> {
         assert!(
             written.written.iter().all(|file| std::fs::metadata(&file.path).is_ok_and(|it| it.len() == file.bytes))
         );
-        let options = ModelReadOptions { all: true, max_bytes: 64 << 20 };
-        let again = Model::read_with(&out, &options).expect("what was written is read");
-        if options.all == (choice % 2 == 0) {
-            assert_same_meshes(&again, &meshes);
-        }
+        // All primitives of an OBJ get tangents; what nobody asked for in a glTF file may be as wrong as it was.
+        let all = options.all || source.extension().is_some_and(|extension| extension == "obj");
+        let options = ModelReadOptions { all, max_bytes: 64 << 20 };
+        assert_same_meshes(&Model::read_with(&out, &options).expect("what was written is read"), &meshes);
     }
     Ok(())
 }

@@ -54,8 +54,19 @@ impl Ran {
 }
 
 impl Baker {
-    /// A real GPU if there is one that passes its self-test, else the CPU. When a GPU fails during a job, the job
-    /// runs again on the CPU.
+    /// A real GPU if there is one that passes its self-test, else the CPU; [`Baker::reason`] tells why.
+    ///
+    /// The CPU takes over a job from its first row when the GPU
+    /// - is lost, or has not answered for a minute;
+    /// - has no memory for a single row, or no room for one: memory that is short, and buffers that are small, only
+    ///   mean fewer rows at a time;
+    /// - returns a row or a tangent that it did not compute: zeros, or what an earlier one left;
+    /// - computes wrong bytes when the job's kernel is compared with the CPU, before its first use.
+    ///
+    /// The result is the same, and [`Ran::fallback`] has the reason. A GPU that was lost is not asked again.
+    ///
+    /// A dispatch that takes 50 ms or more is followed by smaller ones, down to one row: drivers reset a GPU that is
+    /// busy for two seconds.
     pub fn auto() -> Self {
         #[cfg(feature = "gpu")]
         return Self::or_cpu(crate::backend::gpu::Gpu::open_real());
@@ -93,7 +104,8 @@ impl Baker {
     /// `vulkan:llvmpipe` names the API too.
     ///
     /// # Errors
-    /// [`crate::Error::Device`] if there is none, or it fails its self-test; later, if it fails during a job.
+    /// [`crate::Error::Device`] if there is none, or it fails its self-test; later, if it fails during a job, by any
+    /// of what makes [`Baker::auto`] turn to the CPU.
     pub fn gpu(adapter: Option<&str>) -> Result<Self> {
         #[cfg(feature = "gpu")]
         return Ok(Self::only(crate::backend::gpu::Gpu::open(adapter)?));

@@ -57,7 +57,12 @@ impl FromStr for NameTemplate {
     fn from_str(text: &str) -> Result<Self> {
         let plain = [STEM, MAP, SIZE].iter().fold(text.to_owned(), |text, part| text.replace(part, ""));
         let stays = Path::new(text).components().all(|part| matches!(part, Component::Normal(_)));
-        if plain.contains(['{', '}']) || !stays || text.is_empty() || text.ends_with(['/', '\\']) {
+        if plain.contains(['{', '}'])
+            || plain.contains(char::is_control)
+            || !stays
+            || text.is_empty()
+            || text.ends_with(['/', '\\'])
+        {
             let range = "a file name without extension in which {stem} and {size} stand for parts of the input's name, \
                          and {map} for normal or parallax";
             return Err(Error::parameter("name", text, range));
@@ -95,11 +100,13 @@ impl NameTemplate {
         }
     }
 
-    fn name(&self, found: &Found, kind: MapKind, extension: &str) -> String {
+    fn name(&self, found: &Found, kind: MapKind, extension: &str) -> PathBuf {
         let name = self.0.replace(SIZE, &found.size).replace(MAP, &kind.to_string());
         // A stem that is all suffix (`--suffix height`, `height.png`) leaves an underscore without its left side.
         let name = if found.stem.is_empty() { name.replace("{stem}_", "") } else { name };
-        format!("{}.{extension}", name.replace(STEM, &found.stem))
+        let name = format!("{}.{extension}", name.replace(STEM, &found.stem));
+        // A part of the path that comes out empty, or as `..`, leads nowhere else: `{size}/{stem}` without a size.
+        Path::new(&name).components().filter(|part| matches!(part, Component::Normal(_))).collect()
     }
 }
 

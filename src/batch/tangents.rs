@@ -9,7 +9,7 @@ use crate::io::{LeftOut, Model, ModelFile, ModelFiles, ModelReadOptions, Primiti
 use crate::ops::tangents::{MissingNormals, TangentOptions, TangentReport};
 use crate::stream::Monitor;
 use serde::Serialize;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -188,12 +188,9 @@ fn warnings(done: &ModelTangents, options: &TangentOptions) -> Vec<String> {
     let zero = made(true).map(|places| format!("vertices whose normal is zero: {places}: they got smooth ones"));
     let normalised = counted(&|primitive| primitive.found.normals_normalised)
         .map(|places| format!("vertices whose normal is not of unit length: {places}: it was normalised"));
-    let reasons: BTreeSet<&str> = done.left_out.iter().map(|left| left.reason.as_str()).collect();
-    let left_out = reasons.into_iter().map(|reason| {
-        let of_it = done.left_out.iter().filter(|left| left.reason == reason);
-        let names: Vec<&str> = of_it.map(|left| left.name.as_str()).collect();
-        format!("left out: {}: {reason}", listed(&names))
-    });
+    let mut by_reason: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    done.left_out.iter().for_each(|left| by_reason.entry(&left.reason).or_default().push(&left.name));
+    let left_out = by_reason.iter().map(|(reason, names)| format!("left out: {}: {reason}", listed(names)));
     let nothing = done.primitives.is_empty().then(|| "no primitive got tangents".to_owned());
     [undirected, jumps, missing, zero, normalised].into_iter().flatten().chain(left_out).chain(nothing).collect()
 }

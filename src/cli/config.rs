@@ -5,6 +5,8 @@
 use super::args::PerFile;
 use clap::{Args, Command, FromArgMatches};
 use globset::{GlobBuilder, GlobMatcher};
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use texbake::{Error, Result};
 use toml::Spanned;
@@ -27,6 +29,9 @@ struct Override {
 
 const NAME: &str = "texbake.toml";
 
+/// The most bytes of a settings file: thousands of overrides. One may lie in a folder that somebody else made.
+const MOST_BYTES: u64 = 1 << 20;
+
 impl Config {
     /// Reads `given`, or the settings file in the first folder of `paths`, or the one in the current folder, or none.
     ///
@@ -37,7 +42,19 @@ impl Config {
         let usual = first_folder.map(|folder| folder.join(NAME)).into_iter().chain([PathBuf::from(NAME)]);
         let path = given.map(Path::to_owned).or_else(|| usual.into_iter().find(|path| path.is_file()));
         let Some(path) = path else { return Ok(None) };
-        let text = std::fs::read_to_string(&path).map_err(|source| Error::Io { path: path.clone(), source })?;
+        let io = |source| Error::Io { path: path.clone(), source };
+        let mut bytes = Vec::new();
+        // What is no file may have no end.
+        File::open(&path).and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes)).map_err(io)?;
+        if bytes.len() as u64 > MOST_BYTES {
+            let reason = format!("settings have at most {MOST_BYTES} bytes, and it has more");
+            return Err(Error::File { path, reason, remedy: "is it another file?".into() });
+        }
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let valid = error.utf8_error().valid_up_to();
+            let text = String::from_utf8_lossy(error.as_bytes());
+            Source { path: &path, text: &text }.error(valid, "it is no text in UTF-8", "save it as UTF-8")
+        })?;
         Self::parse(&path, &text).map(Some)
     }
 

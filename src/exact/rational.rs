@@ -20,21 +20,28 @@ pub struct Rational {
     denominator: i64,
 }
 
+/// 18 digits.
+const MOST_DIGITS: u32 = 18;
+const GREATEST_PART: i64 = 10i64.pow(MOST_DIGITS) - 1;
+
 const RANGE: &str = "an integer, a decimal (0.35, 1e-3) or a ratio (7/3) of at most 18 digits";
 
 impl Rational {
     /// `numerator / denominator`.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if the denominator is zero, or either part is `i64::MIN`.
+    /// [`Error::Parameter`] if the denominator is zero, or a part has more than 18 digits in lowest terms.
     pub fn new(numerator: i64, denominator: i64) -> Result<Self> {
         let fails = || Error::parameter("number", format_args!("{numerator}/{denominator}"), RANGE);
         if denominator == 0 || numerator == i64::MIN || denominator == i64::MIN {
             return Err(fails());
         }
         let common = gcd(numerator.unsigned_abs().into(), denominator.unsigned_abs().into()) as i64;
-        let sign = denominator.signum();
-        Ok(Self { numerator: sign * numerator / common, denominator: sign * denominator / common })
+        let [numerator, denominator] = [numerator, denominator].map(|part| denominator.signum() * part / common);
+        if [numerator, denominator].iter().any(|part| part.abs() > GREATEST_PART) {
+            return Err(fails());
+        }
+        Ok(Self { numerator, denominator })
     }
 
     /// The part above the line; it carries the sign.
@@ -89,7 +96,6 @@ impl FromStr for Rational {
 
 /// A decimal as a fraction; `None` if it is none, or too long for 18 digits on either side of the line.
 fn decimal(text: &str) -> Option<(i128, i128)> {
-    const MOST_DIGITS: usize = 18;
     let (mantissa, exponent) = match text.split_once(['e', 'E']) {
         Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
         None => (text, 0),
@@ -101,24 +107,28 @@ fn decimal(text: &str) -> Option<(i128, i128)> {
     let (whole, fraction) = unsigned.split_once('.').unwrap_or((unsigned, ""));
     let digits = [whole, fraction].concat();
     let only_digits = digits.bytes().all(|byte| byte.is_ascii_digit());
-    if digits.is_empty() || !only_digits || digits.len() > MOST_DIGITS {
+    if digits.is_empty() || !only_digits || digits.len() > MOST_DIGITS as usize {
         return None;
     }
     let magnitude: i128 = digits.parse().ok()?;
     let numerator = if negative { -magnitude } else { magnitude };
     let shift = exponent.checked_sub(fraction.len() as i32)?;
-    let power = 10i128.checked_pow(shift.unsigned_abs()).filter(|_| shift.unsigned_abs() <= MOST_DIGITS as u32)?;
+    let power = 10i128.checked_pow(shift.unsigned_abs()).filter(|_| shift.unsigned_abs() <= MOST_DIGITS)?;
     Some(if shift < 0 { (numerator, power) } else { (numerator * power, 1) })
 }
 
-/// Decimals of at most this many places are written as such; what is longer, or never ends, as a ratio.
+/// Decimals of at most this many places and 18 digits are written as such; what is longer, or never ends, as a ratio.
 const MOST_PLACES: u32 = 6;
 
 impl fmt::Display for Rational {
     /// `24`, `0.35`, `-12.8`, or `7/3`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let places = (0..=MOST_PLACES).find(|&places| 10i64.pow(places) % self.denominator == 0);
-        match places {
+        let is_decimal = |places: &u32| 10i64.pow(*places) % self.denominator == 0;
+        let is_short = |places: &u32| {
+            let parts = i128::from(self.numerator) * i128::from(10i64.pow(*places) / self.denominator);
+            parts.abs() <= GREATEST_PART.into()
+        };
+        match (0..=MOST_PLACES).find(is_decimal).filter(is_short) {
             Some(0) => write!(f, "{}", self.numerator),
             Some(places) => {
                 let unit = 10i128.pow(places);

@@ -1,6 +1,7 @@
 //! What is said about damaged files, in every format.
 
 use crate::error::Error;
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
 /// The file ends too early.
@@ -10,5 +11,15 @@ pub(super) fn truncated(path: &Path) -> Error {
 
 /// The file is not what its format demands, for `reason`.
 pub(super) fn damaged(path: &Path, reason: impl ToString) -> Error {
-    Error::file(path, reason, "it is damaged; copy or export it again")
+    // Some decoders end a line where others end a sentence.
+    Error::file(path, reason.to_string().trim_end(), "it is damaged; copy or export it again")
+}
+
+/// What a decoder calls an error of the system: only one with the system's number is; others are damage.
+pub(super) fn io_reason(path: &Path, error: io::Error) -> Error {
+    match error.kind() {
+        ErrorKind::UnexpectedEof => truncated(path),
+        _ if error.raw_os_error().is_none() => damaged(path, error),
+        _ => Error::io(path)(error),
+    }
 }

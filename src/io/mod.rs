@@ -130,7 +130,8 @@ impl Default for NormalReadOptions {
 ///
 /// # Errors
 /// [`Error::File`] if there is something else than a file under its name; [`Error::Io`].
-pub fn replace_file(path: &Path, content: &[u8]) -> Result<()> {
+#[cfg(feature = "gpu")]
+pub(crate) fn replace_file(path: &Path, content: &[u8]) -> Result<()> {
     std::fs::create_dir_all(path.parent().unwrap_or(Path::new(""))).map_err(Error::io(path))?;
     let file = replace::Replacement::create(path)?;
     file.output()?.write_all(content).map_err(Error::io(path))?;

@@ -1,6 +1,6 @@
 //! TGA, BMP, JPEG and WebP: 8-bit formats that are decoded whole.
 
-use super::damage::{damaged, truncated};
+use super::damage::{damaged, io_reason, truncated};
 use super::samples::{DecodedWhole, Layout, Opened, Samples};
 use super::{input, limits, srgb};
 use crate::error::{Error, Result};
@@ -104,8 +104,7 @@ fn webp_is_lossy(file: &mut BufReader<File>) -> io::Result<bool> {
 /// The decoder's reason, with the file and the way out.
 fn reason(path: &Path) -> impl FnOnce(ImageError) -> Error + '_ {
     move |error| match error {
-        ImageError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => truncated(path),
-        ImageError::IoError(error) => Error::io(path)(error),
+        ImageError::IoError(error) => io_reason(path, error),
         ImageError::Limits(error) => Error::file(path, error, "raise the limit with --max-bytes"),
         ImageError::Unsupported(error) => Error::file(path, error, "convert it to PNG"),
         error => damaged(path, error),

@@ -1,5 +1,6 @@
 //! Headerless files: rows of heights and nothing else.
 
+use super::damage::io_reason;
 use super::input;
 use super::samples::{Layout, Opened, SampleRows, bytes_mut};
 use crate::error::{Error, Result};
@@ -118,7 +119,7 @@ impl SampleRows for RawRows {
     }
 
     fn read(&mut self, mut rows: HeightsMut<'_>) -> Result<()> {
-        self.file.read_exact(bytes_mut(&mut rows)).map_err(Error::io(&self.path))?;
+        self.file.read_exact(bytes_mut(&mut rows)).map_err(|error| io_reason(&self.path, error))?;
         match (self.layout.kind, rows) {
             (RawKind::U16Le, HeightsMut::U16(heights)) => heights.iter_mut().for_each(|h| *h = u16::from_le(*h)),
             (RawKind::U16Be, HeightsMut::U16(heights)) => heights.iter_mut().for_each(|h| *h = u16::from_be(*h)),

@@ -4,8 +4,8 @@ use super::agreement::Difference;
 use super::answer::{Answer, Meaning};
 use super::cases::Case;
 use super::job::Job;
-use super::report::Mismatch;
-use super::shrink::shrink;
+use super::report::{Mismatch, OracleAnswer, Stored};
+use super::shrink::{Try, shrink};
 use super::subject::{Options, Subject};
 use crate::baker::Baker;
 use crate::ops::Precision;
@@ -17,8 +17,10 @@ pub(super) struct Failing {
 }
 
 /// The smallest job that fails as `check` says, from one that does.
-pub(super) fn smallest(job: Job, difference: Difference, check: impl Fn(&Job) -> Option<Difference>) -> Failing {
-    let smaller = |job: &Job, difference: &Difference| job.smaller(difference.map, difference.index);
+pub(super) fn smallest(job: Job, difference: Difference, check: impl FnMut(&Job) -> Option<Difference>) -> Failing {
+    let smaller = |job: &Job, difference: &Difference, try_: Try<'_, Job>| {
+        job.smaller(difference.map, difference.index).into_iter().try_for_each(try_)
+    };
     let (job, difference) = shrink((job, difference), smaller, check);
     Failing { job, difference }
 }
@@ -28,35 +30,30 @@ impl Failing {
     pub fn describe(&self, subject: &Subject, case: &Case, options: &Options) -> Mismatch {
         let Difference { map, index } = self.difference;
         let exact = self.job.with_precision(Precision::Exact);
-        let said = |job: &Job, baker: &Baker| match job.run(baker) {
-            Ok(answers) => describe_code(&answers[map], index),
-            Err(error) => error.to_string(),
+        let stored = |job: &Job, baker: &Baker| {
+            let answers = job.run(baker).ok()?;
+            let answer = answers.get(map)?;
+            Some(Stored { number: answer.number(index), bits: answer.bits(index) })
         };
         let reference = exact.run(&Baker::reference()).unwrap_or_default();
+        let answer = reference.get(map);
         Mismatch {
             case: case.name.clone(),
             input: self.job.input(),
-            place: reference.get(map).map(|answer| describe_place(answer, index)).unwrap_or_default(),
-            device: said(&self.job, subject.baker()),
-            cpu: said(&self.job, &Baker::cpu()),
-            specification: said(&exact, &Baker::reference()),
-            oracle: self.job.real(map, index).map(|real| {
-                let code = reference.get(map).and_then(|answer| real.code(answer.format));
-                code.map_or(format!("the component is {real}"), |code| {
-                    format!("the component is {real}: code {code:#x}")
-                })
+            place: answer.map(|answer| place(answer, index)).unwrap_or_default(),
+            device: stored(&self.job, subject.baker()),
+            cpu: stored(&self.job, &Baker::cpu()),
+            specification: stored(&exact, &Baker::reference()),
+            oracle: self.job.real(map, index).map(|real| OracleAnswer {
+                component: real.to_string(),
+                bits: answer.and_then(|answer| real.code(answer.format)),
             }),
             command: command(subject, case, options),
         }
     }
 }
 
-/// A code as the number that it stores, and its bits.
-fn describe_code(answer: &Answer, index: usize) -> String {
-    format!("{} ({:#x})", answer.number(index), answer.bits(index))
-}
-
-fn describe_place(answer: &Answer, index: usize) -> String {
+fn place(answer: &Answer, index: usize) -> String {
     let texel = index / answer.format.channels;
     let channel = answer.channel(index);
     match answer.meaning {
@@ -69,9 +66,14 @@ fn describe_place(answer: &Answer, index: usize) -> String {
 fn command(subject: &Subject, case: &Case, options: &Options) -> String {
     let place = match subject.adapter_name() {
         None => "--backend cpu".to_owned(),
-        Some(name) => format!("--adapter {name:?}"),
+        Some(name) => format!("--adapter {}", quoted(&name)),
     };
     let full = if options.full { " --full" } else { "" };
     let sabotage = if subject.is_sabotaged() { " --sabotage" } else { "" };
-    format!("texbake verify {place} --seed {}{full}{sabotage} --only {:?}", options.seed, case.name)
+    format!("texbake verify {place} --seed {}{full}{sabotage} --only {}", options.seed, quoted(&case.name))
+}
+
+/// A text as a shell takes it for one word.
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace(['\\', '"', '$', '`'], ""))
 }

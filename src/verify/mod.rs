@@ -31,8 +31,8 @@ mod subject;
 
 pub use agreement::{Agreement, Bound, Errors};
 #[cfg(feature = "gpu")]
-pub use html::html_page;
+pub use html::Page;
 #[cfg(feature = "gpu")]
 pub use own_kernel::{Binding, KernelComparison, OwnKernel, Tolerance, WordMismatch, Work};
-pub use report::{Comparison, DeviceReport, Mismatch, Report};
+pub use report::{Comparison, DeviceReport, Mismatch, OracleAnswer, Report, Stored};
 pub use subject::{Options, Progress, Subject};

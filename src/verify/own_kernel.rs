@@ -1,10 +1,11 @@
 //! Another crate's own kernel beside its twin on the CPU.
 
-use super::shrink::{shrink, simpler_integers};
+use super::shrink::{Try, shrink, simpler_integers};
 use super::subject::Subject;
 pub use crate::backend::gpu::Binding;
 use crate::error::{Error, Result};
 use serde::Serialize;
+use std::ops::{ControlFlow, Range};
 
 /// A compute kernel in WGSL, and what a binding is to it.
 ///
@@ -102,7 +103,7 @@ impl Subject {
     /// of a difference the simplest inputs that show it are searched.
     ///
     /// The twin gives the words of each [`Binding::ReadWrite`] buffer, in their order, after the work is done. Buffers
-    /// keep their lengths while inputs are simplified.
+    /// keep their lengths while inputs are simplified; a twin that knows no answer for simpler ones gives no buffers.
     ///
     /// # Errors
     /// [`Error::Parameter`] if there is not a buffer for each binding, or the twin gives others than the kernel may
@@ -145,7 +146,8 @@ impl Subject {
             (lengths(&got) == lengths(&expected)).then(|| tolerance.first_difference(&got, &expected))?
         };
         if let Some(found) = tolerance.first_difference(&got, &expected) {
-            let (work, found) = shrink((work.clone(), found), |work, _| simpler(work, kernel.bindings), first);
+            let (work, found) =
+                shrink((work.clone(), found), |work, _, try_| simpler(work, kernel.bindings, try_), first);
             comparison.mismatch = Some(found.describe(work, kernel.bindings));
         }
         Ok(comparison)
@@ -205,38 +207,33 @@ fn in_order(bits: u32) -> i32 {
     if bits >> 31 == 1 { -magnitude } else { magnitude }
 }
 
-/// Work with simpler words in a buffer that the kernel reads: a block of zeros, then one simpler word.
-fn simpler(work: &Work, bindings: &[Binding]) -> Vec<Work> {
-    let mut candidates = Vec::new();
-    let read = (0..bindings.len()).filter(|&buffer| bindings[buffer] == Binding::Read);
-    for buffer in read {
+/// Tries work with simpler words in a buffer that the kernel reads: a block of zeros, then one simpler word.
+fn simpler(work: &Work, bindings: &[Binding], try_: Try<'_, Work>) -> ControlFlow<()> {
+    for buffer in (0..bindings.len()).filter(|&buffer| bindings[buffer] == Binding::Read) {
         let words = &work.buffers[buffer];
-        let mut with = |words: Vec<u32>| {
+        let mut with = |range: Range<usize>, value: u32| {
             let mut candidate = work.clone();
-            candidate.buffers[buffer] = words;
-            candidates.push(candidate);
+            candidate.buffers[buffer][range].fill(value);
+            try_(candidate)
         };
+        // All of them, a half, a quarter, and so on.
         let mut block = words.len();
         while block > 0 {
             for first in (0..words.len()).step_by(block) {
-                let end = words.len().min(first + block);
-                if words[first..end].iter().any(|&word| word != 0) {
-                    let mut zeroed = words.clone();
-                    zeroed[first..end].fill(0);
-                    with(zeroed);
+                let range = first..words.len().min(first + block);
+                if words[range.clone()].iter().any(|&word| word != 0) {
+                    with(range, 0)?;
                 }
             }
             block /= 2;
         }
         for (at, &word) in words.iter().enumerate() {
             for value in simpler_integers(word).skip(1) {
-                let mut other = words.clone();
-                other[at] = value;
-                with(other);
+                with(at..at + 1, value)?;
             }
         }
     }
-    candidates
+    ControlFlow::Continue(())
 }
 
 #[cfg(test)]

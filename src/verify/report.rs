@@ -11,8 +11,10 @@ pub struct Report {
     pub version: &'static str,
     /// What all inputs were made from.
     pub seed: u64,
-    /// Whether every mix of options was verified, and not only every option.
+    /// Whether every pair of options was verified, as [`Options::full`] says.
     pub full: bool,
+    /// Whether somebody stopped it: devices that would have followed are missing.
+    pub interrupted: bool,
     /// Whether kernels were changed first, to see that it is noticed.
     pub sabotaged: bool,
     /// Each device.
@@ -58,28 +60,47 @@ pub struct Mismatch {
     pub input: String,
     /// Where the answers differ: `normal, column 3, row 0, x`.
     pub place: String,
-    /// The device's answer, with its bits.
-    pub device: String,
+    /// The device's answer; `None` if it gives none any more.
+    pub device: Option<Stored>,
     /// The answer of the vectorised CPU.
-    pub cpu: String,
+    pub cpu: Option<Stored>,
     /// The answer of the specification, which is plain scalar code.
-    pub specification: String,
-    /// The formula in whole numbers of any size, where they can say it.
-    pub oracle: Option<String>,
+    pub specification: Option<Stored>,
+    /// The formula in whole numbers of any size, where they can say it: not of tangents, nor of the z that float maps
+    /// of two channels leave out.
+    pub oracle: Option<OracleAnswer>,
     /// What repeats the case.
     pub command: String,
+}
+
+/// What is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Stored {
+    /// The number: of snorm with its sign.
+    pub number: f64,
+    /// Its bits.
+    pub bits: u32,
+}
+
+/// What the formula gives in whole numbers of any size.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct OracleAnswer {
+    /// The component, to twelve digits after the point.
+    pub component: String,
+    /// The bits that store the nearest integer code; `None` for floats.
+    pub bits: Option<u32>,
 }
 
 impl Report {
     /// Of no device yet.
     pub fn new(options: &Options, sabotaged: bool) -> Self {
         let (seed, full) = (options.seed, options.full);
-        Self { version: env!("CARGO_PKG_VERSION"), seed, full, sabotaged, devices: Vec::new() }
+        Self { version: env!("CARGO_PKG_VERSION"), seed, full, interrupted: false, sabotaged, devices: Vec::new() }
     }
 
-    /// Whether there is a device, and every device has passed.
+    /// Whether there is a device, every device has passed, and none is missing.
     pub fn passed(&self) -> bool {
-        !self.devices.is_empty() && self.devices.iter().all(DeviceReport::passed)
+        !self.interrupted && !self.devices.is_empty() && self.devices.iter().all(DeviceReport::passed)
     }
 }
 

@@ -1,37 +1,44 @@
 //! The smallest input that still fails.
 
-/// Runs that one search may take: each compiles nothing, and takes as long as a small job does.
+use std::ops::ControlFlow;
+
+/// Runs that one search may take: each takes as long as a small job does.
 const MOST_RUNS: usize = 600;
+
+/// Takes a candidate, and breaks off when it needs no more.
+pub(crate) type Try<'a, I> = &'a mut dyn FnMut(I) -> ControlFlow<()>;
 
 /// Walks from a failing input to ever smaller ones that fail too, until none of the candidates does.
 ///
-/// `smaller` gives candidates for an input and how it fails, the boldest first; each must be simpler than its origin,
-/// so that the walk ends.
+/// `smaller` hands on candidates for an input and how it fails, one after the other, the boldest first; each must be
+/// simpler than its origin, so that the walk ends.
 pub(crate) fn shrink<I, F>(
     (mut smallest, mut failure): (I, F),
-    smaller: impl Fn(&I, &F) -> Vec<I>,
-    fails: impl Fn(&I) -> Option<F>,
+    smaller: impl Fn(&I, &F, Try<'_, I>) -> ControlFlow<()>,
+    mut fails: impl FnMut(&I) -> Option<F>,
 ) -> (I, F) {
-    let mut runs = 0;
-    'walk: loop {
-        for candidate in smaller(&smallest, &failure) {
-            if runs == MOST_RUNS {
-                return (smallest, failure);
+    let mut left = MOST_RUNS;
+    loop {
+        let mut found = None;
+        let _ = smaller(&smallest, &failure, &mut |candidate| {
+            if left == 0 {
+                return ControlFlow::Break(());
             }
-            runs += 1;
-            if let Some(how) = fails(&candidate) {
-                (smallest, failure) = (candidate, how);
-                continue 'walk;
-            }
+            left -= 1;
+            found = fails(&candidate).map(|how| (candidate, how));
+            if found.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        match found {
+            Some(simpler) => (smallest, failure) = simpler,
+            None => return (smallest, failure),
         }
-        return (smallest, failure);
     }
 }
 
-/// Simpler values for an integer: zero, then the bits above the lowest ones taken away.
+/// Simpler values for an integer: zero, then less by a half, a quarter, and so on.
 pub(crate) fn simpler_integers(value: u32) -> impl Iterator<Item = u32> {
-    let halves = (1..=8).map(move |shift| value >> (9 - shift));
-    std::iter::once(0).chain(halves).chain([value.wrapping_sub(1)]).filter(move |&simpler| simpler < value)
+    let less = (1..u32::BITS).map(move |shift| value - (value >> shift));
+    std::iter::once(0).chain(less).filter(move |&simpler| simpler < value)
 }
 
 /// Simpler values for a float: zero, one, a whole number, fewer bits.
@@ -58,32 +65,35 @@ fn weight(value: f32) -> u32 {
 mod tests {
     use super::*;
 
+    /// A list without one of its numbers, or with one simpler number.
+    fn smaller(list: &Vec<u32>, _: &(), mut try_: Try<'_, Vec<u32>>) -> ControlFlow<()> {
+        (0..list.len()).map(|index| [&list[..index], &list[index + 1..]].concat()).try_for_each(&mut try_)?;
+        (0..list.len())
+            .flat_map(|index| simpler_integers(list[index]).map(move |value| (index, value)))
+            .map(|(index, value)| [&list[..index], &[value], &list[index + 1..]].concat())
+            .try_for_each(try_)
+    }
+
     #[test]
     fn the_smallest_failing_list_is_found() {
-        let smaller = |list: &Vec<u32>, _: &()| {
-            let without = (0..list.len()).map(|index| {
-                let mut shorter = list.clone();
-                shorter.remove(index);
-                shorter
-            });
-            let simpler = (0..list.len()).flat_map(|index| {
-                simpler_integers(list[index]).map(move |value| {
-                    let mut other = list.clone();
-                    other[index] = value;
-                    other
-                })
-            });
-            without.chain(simpler).collect()
-        };
         let fails = |list: &Vec<u32>| list.iter().any(|&value| value > 100).then_some(());
         assert_eq!(shrink((vec![3, 70_000, 12, 900], ()), smaller, fails).0, [101]);
     }
 
     #[test]
     fn a_failure_that_nothing_simplifies_stays() {
-        assert_eq!(shrink((7, 'a'), |_, _| vec![], |_| Some('b')), (7, 'a'));
-        assert_eq!(shrink((7, 'a'), |_, _| vec![1, 2], |_| None), (7, 'a'));
-        assert_eq!(shrink((7, 'a'), |&i, _| vec![i - 1], |&i| (i > 3).then_some('b')), (4, 'b'));
+        assert_eq!(shrink((vec![7], ()), smaller, |_| None).0, [7]);
+    }
+
+    #[test]
+    fn candidates_are_made_one_at_a_time_and_runs_are_bounded() {
+        let mut runs = 0;
+        let endless = |_: &u32, _: &(), try_: Try<'_, u32>| std::iter::repeat(1).try_for_each(try_);
+        let found = shrink((7, ()), endless, |_| {
+            runs += 1;
+            None
+        });
+        assert_eq!((found.0, runs), (7, MOST_RUNS));
     }
 
     #[test]

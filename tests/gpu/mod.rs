@@ -17,6 +17,11 @@ struct Host {
 /// Lavapipe, opened as a host program would; `None` where it is not installed.
 fn host() -> Option<&'static Host> {
     static HOST: OnceLock<Option<Host>> = OnceLock::new();
+    HOST.get_or_init(|| open_host(wgpu::Limits::default())).as_ref()
+}
+
+/// Another one, with these limits.
+fn open_host(required_limits: wgpu::Limits) -> Option<Host> {
     let open = || {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends: wgpu::Backends::VULKAN,
@@ -26,12 +31,13 @@ fn host() -> Option<&'static Host> {
         let adapter = adapters.into_iter().find(|adapter| adapter.get_info().name.contains("llvmpipe"))?;
         let descriptor = wgpu::DeviceDescriptor {
             required_features: wgpu::Features::TEXTURE_FORMAT_16BIT_NORM,
+            required_limits,
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).ok()?;
         Some(Host { device, queue })
     };
-    let host = HOST.get_or_init(open).as_ref();
+    let host = open();
     if host.is_none() {
         println!("not tested: no lavapipe to host a bake");
         assert!(std::env::var_os("TEXBAKE_REQUIRE_GPU").is_none_or(|value| value != "1"), "no lavapipe");
@@ -125,6 +131,22 @@ fn code_bytes(map: &NormalMap) -> &[u8] {
     }
 }
 
+/// The rows that a host gets in a buffer, without padding.
+fn baked(host: &Host, hosted: &Hosted, map: &HeightMap, options: &NormalOptions) -> Vec<u8> {
+    let bake = hosted.normal(map.size(), map.height_type(), options).unwrap();
+    let size = map.size();
+    let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
+    let heights = host.buffer(bake.heights_row_bytes() * size.height(), usage);
+    let codes = host.buffer(bake.codes_row_bytes() * size.height(), usage);
+    host.write(&heights, &height_bytes(map), size.width() * map.height_type().bytes(), bake.heights_row_bytes());
+
+    let mut encoder = host.device.create_command_encoder(&Default::default());
+    bake.encode(&mut encoder, HeightSource::Buffer(heights.slice(..)), CodeTarget::Buffer(codes.slice(..))).unwrap();
+    host.queue.submit([encoder.finish()]);
+    let row = size.width() * options.format.channels.count() * options.format.depth.bytes();
+    host.read(&codes).chunks(bake.codes_row_bytes()).flat_map(|padded| padded[..row].to_vec()).collect()
+}
+
 #[test]
 fn buffers_get_the_reference_bytes() {
     let Some(host) = host() else { return };
@@ -134,28 +156,30 @@ fn buffers_get_the_reference_bytes() {
         for format in FORMATS {
             for channels in [Channels::Xyz, Channels::Xy] {
                 let options = NormalOptions { edges, ..options("7/3", NormalFormat { channels, ..format }) };
-                let bake = hosted.normal(map.size(), map.height_type(), &options).unwrap();
-                let height = map.size().height();
-                let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
-                let heights = host.buffer(bake.heights_row_bytes() * height, usage);
-                let codes = host.buffer(bake.codes_row_bytes() * height, usage);
-                let row = map.size().width() * map.height_type().bytes();
-                host.write(&heights, &height_bytes(&map), row, bake.heights_row_bytes());
-
-                let mut encoder = host.device.create_command_encoder(&Default::default());
-                bake.encode(&mut encoder, HeightSource::Buffer(heights.slice(..)), CodeTarget::Buffer(codes.slice(..)))
-                    .unwrap();
-                host.queue.submit([encoder.finish()]);
-
                 let expected = Baker::reference().normal(&map, &options).unwrap();
-                let row = map.size().width() * channels.count() * format.depth.bytes();
-                let baked = host.read(&codes);
-                let rows: Vec<u8> =
-                    baked.chunks(bake.codes_row_bytes()).flat_map(|padded| padded[..row].to_vec()).collect();
+                let rows = baked(host, &hosted, &map, &options);
                 assert!(rows == code_bytes(&expected), "{} heights, {options:?}", map.height_type());
             }
         }
     }
+}
+
+#[test]
+fn a_device_of_few_workgroups_gets_the_reference_bytes() {
+    // A map of 23 rows takes eight dispatches.
+    let limits = wgpu::Limits { max_compute_workgroups_per_dimension: 3, ..Default::default() };
+    let Some(host) = open_host(limits) else { return };
+    let hosted = Hosted::new(&host.device, &host.queue).unwrap();
+    for map in maps() {
+        for edges in [Edges { x: Edge::Mirror, y: Edge::Wrap }, Edges::both(Edge::Clamp)] {
+            let options = NormalOptions { edges, ..options("7/3", NormalFormat::default()) };
+            let expected = Baker::reference().normal(&map, &options).unwrap();
+            assert!(baked(&host, &hosted, &map, &options) == code_bytes(&expected), "{edges:?}");
+        }
+    }
+    let wide = hosted.normal(Size::new(769, 1).unwrap(), HeightType::U8, &NormalOptions::default());
+    let error = wide.err().expect("four workgroups").to_string();
+    assert!(error.ends_with("rows of 769 texels are too wide for it: 4 workgroups where 3 are allowed"), "{error}");
 }
 
 #[test]
@@ -236,6 +260,10 @@ fn resources_that_do_not_fit_are_errors_that_say_so() {
         let mut encoder = host.device.create_command_encoder(&Default::default());
         let error = bake.encode(&mut encoder, heights, codes).unwrap_err().to_string();
         assert!(error.contains(message), "{error}");
+        let scope = host.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        encoder.finish();
+        let left = pollster::block_on(scope.pop());
+        assert!(left.is_none(), "the encoder is as it was: {left:?}");
     }
 }
 

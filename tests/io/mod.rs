@@ -1,7 +1,10 @@
 //! Reading height maps and normal maps, writing normal maps and parallax maps; models in and out.
 
+#[cfg(all(feature = "cli", target_os = "linux"))]
+mod bombs;
 mod damage;
 mod exr;
+mod found;
 mod gltf;
 mod hand_made_png;
 mod hand_made_tiff;
@@ -9,6 +12,8 @@ mod normal;
 mod obj;
 mod parallax;
 mod png;
+#[cfg(feature = "cli")]
+mod program;
 mod raster;
 mod raw;
 mod replace;

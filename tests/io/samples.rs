@@ -142,7 +142,7 @@ fn hand_made_samples(folder: &Folder) -> Vec<PathBuf> {
         .iter()
         .flat_map(|&(width, rows)| (0..rows).flat_map(move |_| [vec![0], noise(2 * width)].concat()))
         .collect();
-    let one_bit: Vec<u8> = (0..9).flat_map(|row| [0, row * 37, row * 91]).collect();
+    let one_bit: Vec<u8> = (0..9).flat_map(|row| [0, row * 28, row * 31]).collect();
     let mut paths = vec![
         folder.file("interlaced.png", &hand_made(8, 8, 16, 0, 1, &interlaced)),
         folder.file("bits.png", &hand_made(12, 9, 1, 0, 0, &one_bit)),

@@ -12,6 +12,8 @@ mod meshes;
 mod mikktspace;
 mod pairs;
 mod random;
+#[cfg(feature = "gpu")]
+mod shaders;
 
 pub use bakers::{
     Subject, assert_blends, assert_every_baker, assert_every_blend, assert_every_parallax,
@@ -31,6 +33,8 @@ pub use meshes::{
 pub use mikktspace::{bevy_tangents, meshopt_tangents};
 pub use pairs::{every_difference_pair, greatest_sum, map_of_pairs};
 pub use random::Random;
+#[cfg(feature = "gpu")]
+pub use shaders::ShaderFunction;
 
 use texbake::{
     BlendInputs, BlendMethod, BlendOptions, Channels, Convention, Depth, Edge, Edges, Encoding, Filter, Grid,

@@ -1,5 +1,7 @@
 //! Verification itself: it passes where all is well, notices sabotage, shrinks what fails, and says how to repeat it.
 
+#[cfg(feature = "gpu")]
+mod browser;
 #[cfg(feature = "cli")]
 mod command;
 #[cfg(feature = "gpu")]
@@ -32,20 +34,23 @@ fn only(words: &str) -> Options {
 
 /// Comparisons of a quick run, with their cases: what was counted by hand from the lists of choices.
 const COMPARISONS: [(&str, &str, u64); 14] = [
-    ("normal map", "exact", 48),
-    ("parallax map", "exact", 24),
-    ("both in one pass", "exact", 48),
-    ("normal map", "fast", 48),
-    ("parallax map", "fast", 24),
-    ("both in one pass", "fast", 48),
-    ("parallax map of given normals", "exact", 48),
-    ("parallax map of given normals", "fast", 48),
-    ("blend", "exact", 70),
-    ("blend", "fast", 65),
-    ("tangents of mikktspace", "exact", 8),
-    ("tangents of lengyel", "exact", 8),
-    ("tangents of hegde", "exact", 8),
-    ("tangents of mikktspace", "fast", 4),
+    // Three height types, sixteen or eight formats, four or three kinds.
+    ("normal map", "exact", 192),
+    ("parallax map", "exact", 96),
+    ("both in one pass", "exact", 192),
+    ("normal map", "fast", 144),
+    ("parallax map", "fast", 72),
+    ("both in one pass", "fast", 144),
+    ("parallax map of given normals", "exact", 144),
+    ("parallax map of given normals", "fast", 96),
+    // Thirteen methods with five or six formats each, but for the greatest weights in fast; three or two kinds.
+    ("blend", "exact", 210),
+    ("blend", "fast", 130),
+    // Four or two kinds of meshes, four of each.
+    ("tangents of mikktspace", "exact", 16),
+    ("tangents of lengyel", "exact", 16),
+    ("tangents of hegde", "exact", 16),
+    ("tangents of mikktspace", "fast", 8),
 ];
 
 #[test]
@@ -57,7 +62,7 @@ fn every_device_agrees_in_every_comparison() {
             let found = report.comparisons.iter().find(|it| it.operation == operation && it.precision == precision);
             let found = found.unwrap_or_else(|| panic!("{}: {operation}, {precision}", report.device));
             assert_eq!((found.cases, found.failed_cases), (cases, 0), "{}: {operation}, {precision}", report.device);
-            assert!(found.agreement.values > 100 * cases, "{found:?}");
+            assert!(found.agreement.values > 300 * cases, "{found:?}");
             assert_eq!(found.bound.is_some(), precision == "fast", "{found:?}");
         }
         assert_eq!(report.comparisons.len(), COMPARISONS.len() + 2, "with Lengyel's and Hegde's tangents, fast");
@@ -69,7 +74,7 @@ fn the_specification_is_judged_in_whole_numbers() {
     let report = verified(&Subject::cpu(), &only("exact"));
     for operation in ["normal map", "parallax map", "both in one pass", "parallax map of given normals", "blend"] {
         let found = report.comparisons.iter().find(|it| it.operation == operation).unwrap();
-        assert!(found.agreement.judged > 200, "{operation}: {} codes judged", found.agreement.judged);
+        assert!(found.agreement.judged > 1000, "{operation}: {} codes judged", found.agreement.judged);
     }
 }
 

@@ -263,6 +263,14 @@ impl Device {
         let module =
             self.device.create_shader_module(ShaderModuleDescriptor { label: Some(source.name), source: source_text });
         lock(&self.modules).insert(source, module);
+        // What was compiled of its own text, and found to be right, says nothing of this one.
+        lock(&self.pipelines).retain(|kernel, _| kernel.source != source);
+        lock(&self.tested).retain(|kernel| kernel.source != source);
+    }
+
+    /// Drops what was compiled; it is compiled again when it is needed.
+    pub fn forget_kernels(&self) {
+        lock(&self.pipelines).clear();
     }
 
     fn compile(&self, kernel: &Kernel) -> ComputePipeline {

@@ -5,19 +5,20 @@ use super::device::Device;
 use super::kernel::Kernel;
 use super::operation::{Operation, Places, Rows, row_bytes};
 use super::transfer::dispatch;
-use super::{Gpu, Untested, adapters};
+use super::{Gpu, Untested};
 use crate::error::{Error, Result};
 use crate::map::{Channels, Depth, Encoding, HeightType, NormalFormat, Size};
 use crate::ops::bake::{BakePlan, NormalOptions};
 use std::num::NonZero;
 use wgpu::{
-    BindingResource, Buffer, BufferBinding, BufferDescriptor, BufferSlice, BufferUsages, CommandEncoder, Extent3d,
-    TexelCopyBufferInfo, TexelCopyBufferLayout, Texture, TextureFormat, TextureUsages,
+    BindGroup, BindingResource, Buffer, BufferBinding, BufferDescriptor, BufferSlice, BufferUsages, CommandEncoder,
+    ComputePipeline, Extent3d, TexelCopyBufferInfo, TexelCopyBufferLayout, Texture, TextureFormat, TextureUsages,
 };
 
 /// texbake on a wgpu device that the caller owns.
 ///
-/// Nothing is read back and nothing is submitted after [`Hosted::new`]: a bake is recorded into the caller's encoder.
+/// Nothing is read back and nothing is submitted after [`Hosted::normal`]: a bake is recorded into the caller's encoder,
+/// all of it, so how long the device is busy with it at once is up to the caller.
 ///
 /// ```no_run
 /// use texbake::gpu::{CodeTarget, HeightSource, Hosted, wgpu};
@@ -76,8 +77,7 @@ impl Hosted {
     /// # Errors
     /// [`Error::Device`] if the device computes other bytes than the CPU, or cannot run the kernels.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self> {
-        let name = adapters::describe(&device.adapter_info());
-        let gpu = Gpu::tested(Untested { device: Device::new(name, device.clone(), queue.clone()) })?;
+        let gpu = Gpu::tested(Untested::hosted(device, queue))?;
         Ok(Self { gpu })
     }
 
@@ -127,30 +127,52 @@ impl NormalBake<'_> {
     ///
     /// # Errors
     /// [`Error::Parameter`] if a buffer is too small, or a texture has another size or a format that does not hold
-    /// the heights or the codes; [`Error::Device`] if wgpu refuses a resource, for a missing usage say.
+    /// the heights or the codes; [`Error::Device`] if wgpu refuses a resource, for a missing usage or for want of memory
+    /// say: nothing is recorded then, and the encoder is as it was.
     pub fn encode(&self, encoder: &mut CommandEncoder, heights: HeightSource<'_>, codes: CodeTarget<'_>) -> Result<()> {
         self.check(heights, codes)?;
+        // What may be refused comes first: an encoder with a command that was refused is lost to its owner.
+        let recording = self.device.guarded(|| Ok(self.prepare(heights, codes)))?;
         self.device.guarded(|| {
-            let heights = self.heights_on_device(encoder, heights);
-            match codes {
-                CodeTarget::Buffer(slice) => {
-                    let codes_per_texel = self.format.channels.count();
-                    self.dispatch(
-                        encoder,
-                        &self.kernel(codes_per_texel),
-                        &heights,
-                        &BufferRows::of(slice, self.codes_row_bytes()),
-                    );
-                }
-                CodeTarget::Texture(texture) => {
-                    let codes_per_texel = texture_channels(self.format);
-                    let codes = self.scratch("codes", self.row_bytes_of_codes(codes_per_texel));
-                    self.dispatch(encoder, &self.kernel(codes_per_texel), &heights, &codes);
-                    encoder.copy_buffer_to_texture(codes.layout(), texture.as_image_copy(), extent(self.plan.size));
-                }
-            }
+            self.record(encoder, &recording, heights, codes);
             Ok(())
         })
+    }
+
+    fn prepare(&self, heights: HeightSource<'_>, codes: CodeTarget<'_>) -> Recording {
+        let heights = match heights {
+            HeightSource::Buffer(slice) => BufferRows::of(slice, self.heights_row_bytes()),
+            HeightSource::Texture(_) => self.scratch("heights", self.heights_row_bytes()),
+        };
+        let (codes_per_texel, codes) = match codes {
+            CodeTarget::Buffer(slice) => (self.format.channels.count(), BufferRows::of(slice, self.codes_row_bytes())),
+            CodeTarget::Texture(_) => {
+                let codes_per_texel = texture_channels(self.format);
+                (codes_per_texel, self.scratch("codes", self.row_bytes_of_codes(codes_per_texel)))
+            }
+        };
+        let pipeline = self.device.pipeline(&self.kernel(codes_per_texel));
+        let dispatches = self.dispatches(&heights, &codes);
+        Recording { heights, codes, pipeline, dispatches }
+    }
+
+    fn record(
+        &self,
+        encoder: &mut CommandEncoder,
+        Recording { heights: rows_of_heights, codes: rows_of_codes, pipeline, dispatches }: &Recording,
+        heights: HeightSource<'_>,
+        codes: CodeTarget<'_>,
+    ) {
+        let size = self.plan.size;
+        if let HeightSource::Texture(texture) = heights {
+            encoder.copy_texture_to_buffer(texture.as_image_copy(), rows_of_heights.layout(), extent(size));
+        }
+        for (bindings, rows) in dispatches {
+            dispatch(encoder, pipeline, bindings, size.width(), *rows);
+        }
+        if let CodeTarget::Texture(texture) = codes {
+            encoder.copy_buffer_to_texture(rows_of_codes.layout(), texture.as_image_copy(), extent(size));
+        }
     }
 
     fn check(&self, heights: HeightSource<'_>, codes: CodeTarget<'_>) -> Result<()> {
@@ -183,18 +205,6 @@ impl NormalBake<'_> {
         row_bytes(self.plan.size.width(), codes_per_texel * self.format.depth.bytes())
     }
 
-    /// The heights as rows in a buffer.
-    fn heights_on_device(&self, encoder: &mut CommandEncoder, heights: HeightSource<'_>) -> BufferRows {
-        match heights {
-            HeightSource::Buffer(slice) => BufferRows::of(slice, self.heights_row_bytes()),
-            HeightSource::Texture(texture) => {
-                let rows = self.scratch("heights", self.heights_row_bytes());
-                encoder.copy_texture_to_buffer(texture.as_image_copy(), rows.layout(), extent(self.plan.size));
-                rows
-            }
-        }
-    }
-
     /// A buffer for the bake's rows, to be copied from or to a texture; it lives as long as the recorded commands.
     fn scratch(&self, label: &str, row_bytes: usize) -> BufferRows {
         let row_bytes = row_bytes.next_multiple_of(COPY_ROW_BYTES);
@@ -207,18 +217,17 @@ impl NormalBake<'_> {
         BufferRows { buffer, offset: 0, row_bytes }
     }
 
-    /// Records the kernel over all rows, in as many dispatches as their number needs.
-    fn dispatch(&self, encoder: &mut CommandEncoder, kernel: &Kernel, heights: &BufferRows, codes: &BufferRows) {
+    /// The kernel over all rows, in as many dispatches as their number needs: each with its bindings and its rows.
+    fn dispatches(&self, heights: &BufferRows, codes: &BufferRows) -> Vec<(BindGroup, usize)> {
         let Self { device, plan, .. } = self;
-        let (width, height) = (plan.size.width(), plan.size.height());
-        let pipeline = device.pipeline(kernel);
+        let height = plan.size.height();
         let place = |rows: &BufferRows, row: usize| {
             let words = rows.row_bytes / 4;
             Rows { place: (row * words) as u32, words: words as u32 }
         };
         let heights_at = |row: isize| place(heights, plan.edges.y.resolve(row, height));
         let greatest_dispatch = device.greatest_dispatch();
-        for first in (0..height).step_by(greatest_dispatch) {
+        let part = |first: usize| {
             let rows = greatest_dispatch.min(height - first);
             let [above, body, below] = [first as isize - 1, first as isize, (first + rows) as isize];
             let places = Places {
@@ -228,10 +237,18 @@ impl NormalBake<'_> {
                 ..Places::default()
             };
             let uniform = device.uniform(&plan.params(&places));
-            let bindings = device.bind(uniform.as_entire_binding(), heights.binding(height), codes.binding(height));
-            dispatch(encoder, &pipeline, &bindings, width, rows);
-        }
+            (device.bind(uniform.as_entire_binding(), heights.binding(height), codes.binding(height)), rows)
+        };
+        (0..height).step_by(greatest_dispatch).map(part).collect()
     }
+}
+
+/// What a bake needs on the device to be recorded.
+struct Recording {
+    heights: BufferRows,
+    codes: BufferRows,
+    pipeline: ComputePipeline,
+    dispatches: Vec<(BindGroup, usize)>,
 }
 
 /// Rows in a buffer from an offset on.

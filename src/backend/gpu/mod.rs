@@ -22,7 +22,7 @@ mod pace;
 mod parallax;
 pub(crate) mod recording;
 #[cfg(test)]
-pub(crate) mod recording_tests;
+mod recording_tests;
 #[cfg(test)]
 mod reflection;
 mod self_test;
@@ -87,6 +87,17 @@ impl Untested {
     /// [`crate::Error::Device`] with what the compiler says.
     pub fn compile(&self, wgsl: &str, entry_point: &str, constants: &[(&str, f64)]) -> Result<OwnPipeline<'_>> {
         OwnPipeline::new(&self.device, wgsl, entry_point, constants)
+    }
+
+    /// A device that somebody else has opened.
+    pub fn hosted(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
+        let name = adapters::describe(&device.adapter_info());
+        Self { device: Device::new(name, device.clone(), queue.clone()) }
+    }
+
+    /// Drops what was compiled.
+    pub fn forget_kernels(&self) {
+        self.device.forget_kernels();
     }
 
     /// Runs other texts in place of the kernels' own.

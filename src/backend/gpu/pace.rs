@@ -34,6 +34,8 @@ pub(super) struct UnderWay {
     /// `None`: it only copies.
     work: Option<Work>,
     begun: Instant,
+    /// How long it took to submit: to compute, on drivers that do it there and then.
+    submitting: Duration,
 }
 
 /// The queue of a device as it is seen from outside, and what that says of each kernel's speed.
@@ -78,9 +80,10 @@ impl Pace {
         seen.count += 1;
         let begun = Instant::now();
         let submission = Submission { number: seen.count, index: submit() };
+        let submitting = begun.elapsed();
         #[cfg(test)]
         seen.all.extend(work.clone());
-        seen.under_way.push_back(UnderWay { submission: submission.clone(), work, begun });
+        seen.under_way.push_back(UnderWay { submission: submission.clone(), work, begun, submitting });
         submission
     }
 
@@ -98,30 +101,29 @@ impl Pace {
     }
 
     /// A submission has ended: now, or before anybody looked.
-    pub fn end(&self, UnderWay { work, begun, .. }: UnderWay, is_now: bool) {
+    pub fn end(&self, UnderWay { work, begun, submitting, .. }: UnderWay, is_now: bool) {
         let now = Instant::now();
         let mut seen = lock(&self.seen);
-        let begun = seen.latest_end.map_or(begun, |end| end.max(begun));
+        let idle_since = seen.latest_end.map_or(begun, |end| end.max(begun));
         seen.latest_end = Some(now);
-        // It took that long at least: the end before it may have been seen late.
-        let time = if is_now { now.duration_since(begun) } else { Duration::ZERO };
-        if let Some(work) = work {
-            seen.judge(work, time, is_now, self.longest);
-        }
+        let Some(work) = work else { return };
+        // The end before it may have been seen late, so it may have had the device for longer than since then.
+        let at_least = if is_now { submitting.max(now.duration_since(idle_since)) } else { submitting };
+        seen.judge(work, at_least, now.duration_since(begun), self.longest);
     }
 }
 
 impl Seen {
-    fn judge(&mut self, Work { kernel, items }: Work, time: Duration, is_measured: bool, longest: Duration) {
+    fn judge(&mut self, Work { kernel, items }: Work, at_least: Duration, at_most: Duration, longest: Duration) {
         // A kernel's first submission may have waited for the driver to compile it.
         let Some(most) = self.most.get_mut(&kernel) else {
             self.most.insert(kernel, usize::MAX);
             return;
         };
-        if time >= longest {
+        if at_least >= longest {
             *most = (items / 2).min(*most);
-        } else if is_measured && time < longest / 4 && items > *most / 2 {
-            // It was slow for another reason: the device was busy with something else.
+        } else if at_most < longest / 4 && items > *most / 2 {
+            // Another one was slow for another reason: the device was busy with something else.
             *most = most.saturating_mul(2);
         }
     }

@@ -2,7 +2,7 @@
 
 use super::choose::{Wanted, choose};
 use crate::error::{Error, Result};
-use crate::io::damage::{damaged, truncated};
+use crate::io::damage::{damaged, io_reason, truncated};
 use crate::io::groups::{GroupDecoder, GroupedRows};
 use crate::io::samples::{Layout, Opened, Samples};
 use crate::io::{input, limits};
@@ -15,7 +15,7 @@ use exr::meta::attribute::{ChannelDescription, SampleType};
 use exr::meta::{BlockDescription, MetaData};
 use half::f16;
 use std::fs::File;
-use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// An EXR by blocks of scan lines or rows of tiles, found through the file's own table of block offsets.
@@ -202,8 +202,7 @@ impl GroupDecoder for ExrBlocks {
 fn reason(path: &Path) -> impl FnOnce(exr::error::Error) -> Error + '_ {
     use exr::error::Error::{Io, NotSupported};
     move |error| match error {
-        Io(error) if error.kind() == ErrorKind::UnexpectedEof => truncated(path),
-        Io(error) => Error::io(path)(error),
+        Io(error) => io_reason(path, error),
         NotSupported(what) => Error::file(path, what, "export it as a flat image with ZIP compression"),
         // What the decoder says when bytes are missing.
         error if error.to_string().contains("reference to missing bytes") => truncated(path),

@@ -17,6 +17,7 @@ pub(super) fn read(path: &Path, max_bytes: u64) -> Result<Document> {
     let file = read_file(path, max_bytes)?;
     let is_glb = file.starts_with(MAGIC);
     let chunks = if is_glb { Chunks::of(path, &file)? } else { Chunks::bare(path, &file)? };
+    check_values(path, chunks.json, max_bytes)?;
     let json: Value = serde_json::from_slice(chunks.json).map_err(|error| {
         Error::file(path, format!("it is not glTF: {error}"), "texbake reads .glb, .gltf and .obj; export it again")
     })?;
@@ -72,6 +73,24 @@ const LISTS: [&str; 11] = [
     "skins",
     "textures",
 ];
+
+/// Bytes that a value of JSON may take: a field with its name, in lists that grow by doubling; and its copy that gets
+/// tangents.
+pub(in crate::io) const VALUE_BYTES: u64 = 4 * size_of::<(u64, String, Value)>() as u64;
+
+/// Bytes that the values of a document may take whatever the limit is.
+const ALWAYS_BYTES: u64 = 16 << 20;
+
+/// Fails if the values of a document, which are many times as large as their text, may take more than `limit` bytes.
+fn check_values(path: &Path, json: &[u8], limit: u64) -> Result<()> {
+    // A value stands at the beginning, behind a bracket or behind a comma; text may hold commas that part nothing.
+    let count = 1 + json.iter().filter(|byte| matches!(byte, b'{' | b'[' | b',')).count() as u64;
+    if count * VALUE_BYTES <= limit.max(ALWAYS_BYTES) {
+        return Ok(());
+    }
+    let reason = format!("its {count} values take up to {} bytes, above the limit of {limit}", count * VALUE_BYTES);
+    Err(Error::file(path, reason, "raise it with --max-bytes"))
+}
 
 /// A file of at most `limit` bytes.
 pub(in crate::io) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>> {

@@ -41,6 +41,13 @@ pub(super) struct Made {
 const BITANGENT: &str = "_BITANGENT";
 
 impl Made {
+    /// Bytes of the tangents, and of what comes with them.
+    pub fn bytes(&self) -> u64 {
+        let Tangents { tangents, normals, copies, triangles, .. } = &self.tangents;
+        let vectors = 16 * tangents.len() + 12 * normals.as_ref().map_or(0, Vec::len);
+        (vectors + 4 * copies.len() + 12 * triangles.as_ref().map_or(0, Vec::len)) as u64
+    }
+
     /// Whether it has an attribute of this name.
     fn has(&self, name: &str) -> bool {
         match name {

@@ -7,6 +7,9 @@ use gltf_json::accessor::sparse::Sparse;
 use gltf_json::accessor::{ComponentType, Type};
 use gltf_json::validation::Checked;
 
+/// How many times the bytes of its positions a mesh and its tangents take, at most, while they are computed.
+const UNPACKED: u64 = 32;
+
 /// The elements of an accessor without gaps, sparse ones in place.
 #[derive(Debug)]
 pub(super) struct Elements {
@@ -34,15 +37,15 @@ impl Elements {
         };
         let component = component.0;
         let size = element_size(type_, component);
-        // Without a view no byte stands for what is claimed.
-        let limit = if read.buffer_view.is_none() { document.max_bytes } else { u64::MAX };
+        // Without a view no byte stands for what is claimed, and a mesh with its tangents takes many times as much.
+        let limit = if read.buffer_view.is_none() { document.max_bytes / UNPACKED } else { u64::MAX };
         let bytes = read.count.0.checked_mul(size as u64).filter(|&bytes| bytes <= limit);
         let (Some(bytes), Ok(count)) = (bytes, usize::try_from(read.count.0)) else {
             if let Some(view) = &read.buffer_view {
                 return Err(damaged(&format!("reaches beyond bufferViews[{}]", view.value())));
             }
             let reason = format!("accessors[{accessor}] claims {} elements of {size} bytes", read.count.0);
-            let limit = format!("the limit is {} bytes: raise it with --max-bytes", document.max_bytes);
+            let limit = format!("the limit is {limit} bytes, a part of --max-bytes: raise it");
             return Err(document.error(reason, limit));
         };
 

@@ -20,7 +20,7 @@ mod transform;
 mod uri;
 mod write;
 
-pub(super) use container::read_file;
+pub(super) use container::{VALUE_BYTES, read_file};
 pub use document::ModelFile;
 pub(super) use document::{Buffer, Document, Origin};
 pub use model::{LeftOut, Model, ModelFiles, ModelReadOptions, ModelReport, Primitive};

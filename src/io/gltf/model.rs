@@ -23,7 +23,8 @@ pub struct ModelReadOptions {
     /// Whether primitives without a normal map get tangents too, for their first texture coordinates (TEXCOORD_0).
     /// Primitives of an OBJ always do.
     pub all: bool,
-    /// The most bytes that the file and its buffers may take together, and one attribute of it when it is unpacked.
+    /// The most bytes that the file, its buffers and the images that go with it may take together; that the values of
+    /// its JSON may take; and that the tangents may take. An attribute that no bytes stand for may have a part of it.
     pub max_bytes: u64,
 }
 
@@ -58,6 +59,8 @@ pub struct Model {
     left_out: Vec<LeftOut>,
     warnings: Vec<String>,
     made: BTreeMap<usize, Made>,
+    /// Bytes of all that was made: vertices may be many primitives' own.
+    made_bytes: u64,
 }
 
 /// A primitive that needs tangents.
@@ -143,7 +146,7 @@ impl Model {
             .flat_map(|(geometry, places)| places.iter().map(move |place| (geometry, *place)))
             .flat_map(|(geometry, place)| primitive_doubts(&document, geometry, place));
         let warnings = document.warnings.iter().cloned().chain(doubts(&document)).chain(of_primitives).collect();
-        Ok(Self { document, geometries, primitives, left_out, warnings, made: BTreeMap::new() })
+        Ok(Self { document, geometries, primitives, left_out, warnings, made: BTreeMap::new(), made_bytes: 0 })
     }
 
     /// The primitives that need tangents, in the order of the file. Those that are the same are listed once.
@@ -186,13 +189,22 @@ impl Model {
     /// by [`Model::write`].
     ///
     /// # Errors
-    /// [`Error::Parameter`] if there is no such primitive, or the tangents are not those of its mesh.
+    /// [`Error::Parameter`] if there is no such primitive, or the tangents are not those of its mesh; [`Error::File`] if
+    /// all tangents together take more than [`ModelReadOptions::max_bytes`].
     pub fn set_tangents(&mut self, primitive: usize, tangents: Tangents) -> Result<()> {
         let (geometry, places) = self.geometry(primitive)?;
         let vertices = Elements::count(&self.document, geometry.position)
             .map_err(|error| named(&self.document, places[0], error))?;
         check(&tangents, vertices)?;
-        self.made.insert(primitive, Made { tangents, bitangents: None });
+        let (made, limit) = (Made { tangents, bitangents: None }, self.document.max_bytes);
+        let before = self.made.get(&primitive).map_or(0, Made::bytes);
+        let bytes = self.made_bytes - before + made.bytes();
+        if bytes > limit {
+            let reason = format!("the tangents of its primitives take {bytes} bytes, above the limit of {limit}");
+            return Err(self.document.error(reason, "raise it with --max-bytes, or split the model"));
+        }
+        self.made_bytes = bytes;
+        self.made.insert(primitive, made);
         Ok(())
     }
 

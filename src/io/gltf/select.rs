@@ -3,7 +3,7 @@
 use super::document::{Document, index};
 use super::elements::Elements;
 use super::transform::TextureTransform;
-use crate::error::Result;
+use crate::error::{Result, plain};
 use serde_json::Value;
 use std::collections::HashMap;
 
@@ -126,7 +126,7 @@ pub(super) fn doubts(document: &Document) -> Vec<String> {
     let is_unknown = |name: &&str| !KNOWN.iter().any(|known| name.starts_with(known)) && !HARMLESS.contains(name);
     let unknown: Vec<&str> = document.required_extensions().filter(is_unknown).collect();
     let unknown = (!unknown.is_empty()).then(|| {
-        let names = unknown.join(", ");
+        let names = plain(&unknown.join(", ")).into_owned();
         format!("it requires what texbake does not know, and leaves as it is: {names}")
     });
     unknown.into_iter().collect()

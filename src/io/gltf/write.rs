@@ -280,7 +280,7 @@ type Image = (usize, String, Vec<u8>);
 
 /// The images in data URIs and in files; addresses stay what they are.
 fn images_of(document: &Document, read: &mut Vec<ModelFile>) -> Result<Vec<Image>> {
-    let mut images = Vec::new();
+    let (mut images, mut left) = (Vec::new(), document.max_bytes);
     for (number, image) in document.list("images").iter().enumerate() {
         let Some(uri) = image["uri"].as_str().filter(|uri| !is_url(uri)) else { continue };
         if let Uri::Data(data) = Uri::of(uri) {
@@ -289,9 +289,12 @@ fn images_of(document: &Document, read: &mut Vec<ModelFile>) -> Result<Vec<Image
             continue;
         }
         let path = file_of(&document.path, &uri::upward(uri).ok_or_else(|| not_beside(document, uri))?);
-        let bytes = read_file(&path, document.max_bytes).map_err(|error| {
-            let reason = format!("its image {uri} cannot be read: {error}");
-            document.error(reason, "put the file there, or write .gltf into the folder it came from")
+        let bytes = read_within(&path, &mut left).map_err(|error| match error {
+            Error::Io { source, .. } => document.error(
+                format!("its image {uri} cannot be read: {source}"),
+                "put the file there, or write .gltf into the folder it came from",
+            ),
+            other => other,
         })?;
         // What is no image stays where it is; above the folder that may be anything.
         let Some(type_) = image_type(&bytes, image["mimeType"].as_str(), &path) else { continue };
@@ -299,6 +302,13 @@ fn images_of(document: &Document, read: &mut Vec<ModelFile>) -> Result<Vec<Image
         images.push((number, type_, bytes));
     }
     Ok(images)
+}
+
+/// A file that goes with the model; all of them are held at once, in `left` bytes.
+fn read_within(path: &Path, left: &mut u64) -> Result<Vec<u8>> {
+    let bytes = read_file(path, *left)?;
+    *left -= bytes.len() as u64;
+    Ok(bytes)
 }
 
 /// By its first bytes; in the model's folder, else as it is called.
@@ -463,6 +473,7 @@ fn copied_files(
     files: &mut Vec<NewFile<'_>>,
     read: &mut Vec<ModelFile>,
 ) -> Result<()> {
+    let mut left = document.max_bytes;
     let mut uris = Vec::new();
     collect_uris(json, &mut uris);
     for text in uris {
@@ -473,9 +484,12 @@ fn copied_files(
             continue;
         }
         let source = file_of(&document.path, &relative);
-        let bytes = input::read(&source, u64::MAX).map_err(|error| {
-            let reason = format!("it refers to {uri}, which cannot be read: {error}");
-            document.error(reason, "put the file there, or write the model into the folder it came from")
+        let bytes = read_within(&source, &mut left).map_err(|error| match error {
+            Error::Io { source, .. } => document.error(
+                format!("it refers to {uri}, which cannot be read: {source}"),
+                "put the file there, or write the model into the folder it came from",
+            ),
+            other => other,
         })?;
         if !read.iter().any(|file| file.path == source) {
             read.push(ModelFile::new(&source, &bytes));

@@ -1,9 +1,10 @@
 //! Libraries of materials (.mtl), as glTF's materials.
 
-use super::super::gltf::{ModelFile, read_file, uri_of_path};
+use crate::error::plain;
+use crate::io::gltf::{ModelFile, read_file, uri_of_path};
 use serde_json::{Map, Value, json};
-use std::collections::BTreeSet;
-use std::path::Path;
+use std::collections::{BTreeSet, HashMap, HashSet};
+use std::path::{Path, PathBuf};
 
 /// The materials, images and textures of a document to be.
 #[derive(Debug, Default)]
@@ -13,33 +14,55 @@ pub(super) struct Materials {
     pub images: Vec<Value>,
     pub files: Vec<ModelFile>,
     pub warnings: Vec<String>,
+    /// Bytes of libraries that may still be read.
+    left: u64,
+    /// The number of each material's name, and of each image's; the first of several counts.
+    numbers: HashMap<String, usize>,
+    image_numbers: HashMap<String, usize>,
+    /// The libraries that were read.
+    libraries: HashSet<PathBuf>,
 }
 
+/// How many times its bytes a library takes as materials and as warnings, at most.
+pub(super) const UNPACKED: u64 = 64;
+
 impl Materials {
+    /// Those of a model, of which no library is read yet; all libraries take at most `limit` bytes.
+    pub fn of(model: ModelFile, limit: u64) -> Self {
+        Self { files: vec![model], left: limit, ..Self::default() }
+    }
+
     /// The number of a material; one that no library has, has only a name.
     pub fn number(&mut self, name: &str) -> usize {
-        let known = self.materials.iter().position(|material| material["name"] == name);
-        known.unwrap_or_else(|| {
-            self.materials.push(json!({ "name": name }));
-            self.materials.len() - 1
-        })
+        let known = self.numbers.get(name).copied();
+        known.unwrap_or_else(|| self.add(name))
+    }
+
+    fn add(&mut self, name: &str) -> usize {
+        let number = self.materials.len();
+        self.materials.push(json!({ "name": name }));
+        *self.numbers.entry(name.to_owned()).or_insert(number)
     }
 
     /// Reads what follows `mtllib`: one name, with spaces perhaps, or several.
-    pub fn read(&mut self, model: &Path, names: &str, max_bytes: u64) {
+    pub fn read(&mut self, model: &Path, names: &str) {
         if model.with_file_name(names.replace('\\', "/")).is_file() {
-            return self.read_library(model, names, max_bytes);
+            return self.read_library(model, names);
         }
-        names.split_whitespace().for_each(|name| self.read_library(model, name, max_bytes));
+        names.split_whitespace().for_each(|name| self.read_library(model, name));
     }
 
-    fn read_library(&mut self, model: &Path, name: &str, max_bytes: u64) {
+    fn read_library(&mut self, model: &Path, name: &str) {
         let name = name.replace('\\', "/");
         let path = model.with_file_name(&name);
-        let bytes = match read_file(&path, max_bytes) {
+        if !self.libraries.insert(std::fs::canonicalize(&path).unwrap_or_else(|_| path.clone())) {
+            return;
+        }
+        let bytes = match read_file(&path, self.left) {
             Ok(bytes) => bytes,
             Err(error) => return self.warnings.push(format!("its materials keep only their names: {error}")),
         };
+        self.left -= bytes.len() as u64;
         self.files.push(ModelFile::new(&path, &bytes));
         let folder = name.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
         let mut dropped = BTreeSet::new();
@@ -48,7 +71,7 @@ impl Materials {
             let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
             let rest = rest.trim();
             if keyword == "newmtl" {
-                self.materials.push(json!({ "name": rest }));
+                self.add(rest);
                 continue;
             }
             let Some(at) = self.materials.len().checked_sub(1) else { continue };
@@ -67,7 +90,11 @@ impl Materials {
                     Some(texture_info) => self.materials[at]["normalTexture"] = texture_info,
                     None => {
                         let reason = "it is no PNG or JPEG file that exists, at a relative path";
-                        self.warnings.push(format!("{}: {line}: the texture is dropped: {reason}", path.display()));
+                        self.warnings.push(format!(
+                            "{}: {}: the texture is dropped: {reason}",
+                            path.display(),
+                            plain(line)
+                        ));
                     }
                 },
                 "" | "illum" => {}
@@ -80,7 +107,7 @@ impl Materials {
             self.warnings.push(format!(
                 "{}: dropped, as texbake does not read it: {}",
                 path.display(),
-                dropped.join(", ")
+                plain(&dropped.join(", "))
             ));
         }
     }
@@ -94,11 +121,10 @@ impl Materials {
         if !(is_image && is_relative && model.with_file_name(&name).is_file()) {
             return None;
         }
-        let image = json!({ "uri": uri_of_path(&name) });
-        let known = self.images.iter().position(|known| *known == image);
-        let at = known.unwrap_or_else(|| {
+        let uri = uri_of_path(&name);
+        let at = *self.image_numbers.entry(uri.clone()).or_insert_with(|| {
             self.textures.push(json!({ "source": self.images.len() }));
-            self.images.push(image);
+            self.images.push(json!({ "uri": uri }));
             self.images.len() - 1
         });
         Some(json!({ "index": at }))

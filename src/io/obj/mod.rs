@@ -8,7 +8,7 @@ mod materials;
 mod polygon;
 mod text;
 
-use super::gltf::{Buffer, Document, ModelFile, Origin, read_file};
+use super::gltf::{Buffer, Document, ModelFile, Origin, VALUE_BYTES, read_file};
 use crate::error::{Error, Result};
 use materials::Materials;
 use serde_json::{Value, json};
@@ -30,19 +30,21 @@ pub(super) fn read(path: &Path, max_bytes: u64) -> Result<Document> {
         return Err(Error::file(path, reason, "raise it with --max-bytes"));
     }
 
-    let mut materials = Materials { files: vec![ModelFile::new(path, &bytes)], ..Materials::default() };
-    obj.libraries.iter().for_each(|names| materials.read(path, names, max_bytes));
+    let mut materials = Materials::of(ModelFile::new(path, &bytes), (max_bytes - needed) / materials::UNPACKED);
+    obj.libraries.iter().for_each(|names| materials.read(path, names));
     let mut this = Builder::default();
     let mut meshes = Vec::new();
     for object in &obj.objects {
         let primitives = object.parts.iter().map(|part| {
-            let mut primitive = this.primitive(&obj, part);
+            let mut primitive = this
+                .primitive(&obj, part)
+                .map_err(|reason| Error::file(path, reason, "export the model as triangles"))?;
             if let Some(name) = &part.material {
                 primitive["material"] = materials.number(name).into();
             }
-            primitive
+            Ok(primitive)
         });
-        let primitives: Vec<Value> = primitives.collect();
+        let primitives: Vec<Value> = primitives.collect::<Result<_>>()?;
         meshes.push(match &object.name {
             Some(name) => json!({ "name": name, "primitives": primitives }),
             None => json!({ "primitives": primitives }),
@@ -58,7 +60,7 @@ pub(super) fn read(path: &Path, max_bytes: u64) -> Result<Document> {
         "bufferViews": this.views,
         "buffers": [{ "byteLength": this.bytes.len() }],
     });
-    let Materials { materials, textures, images, files, warnings } = materials;
+    let Materials { materials, textures, images, files, warnings, .. } = materials;
     for (kind, list) in [("materials", materials), ("textures", textures), ("images", images)] {
         if !list.is_empty() {
             json[kind] = list.into();
@@ -69,7 +71,10 @@ pub(super) fn read(path: &Path, max_bytes: u64) -> Result<Document> {
     Ok(Document { path, json, buffers, is_glb: false, files, warnings, more_chunks: Vec::new(), max_bytes })
 }
 
-/// Bytes of the text, its numbers, and the vertices and indices made of them.
+/// Values of JSON that describe a part: a primitive with its accessors and their views.
+const PART_VALUES: u64 = 80;
+
+/// Bytes of the text, its numbers, its parts and the vertices and indices made of them.
 fn needed(bytes: &[u8], obj: &Obj) -> u64 {
     let parts = || obj.objects.iter().flat_map(|object| &object.parts);
     let corners: usize = parts().map(|part| part.corners.len()).sum();
@@ -77,7 +82,8 @@ fn needed(bytes: &[u8], obj: &Obj) -> u64 {
     let vertices = obj.positions.len().max(obj.texcoords.len()).max(obj.normals.len()).min(corners);
     // A corner is three words and one index, or more where polygons are cut; a vertex takes 44 bytes, and 24 while
     // corners look for theirs.
-    (bytes.len() + numbers + 24 * corners + 68 * vertices) as u64
+    let values = PART_VALUES * parts().count() as u64 * VALUE_BYTES;
+    (bytes.len() + numbers + 24 * corners + 68 * vertices) as u64 + values
 }
 
 #[derive(Default)]
@@ -89,7 +95,7 @@ struct Builder {
 
 impl Builder {
     /// Triangles with one vertex for corners that are the same.
-    fn primitive(&mut self, obj: &Obj, part: &Part) -> Value {
+    fn primitive(&mut self, obj: &Obj, part: &Part) -> Result<Value, String> {
         let mut vertices: Vec<Corner> = Vec::new();
         let mut known: HashMap<Corner, u32> = HashMap::new();
         let mut indices: Vec<u32> = Vec::new();
@@ -98,7 +104,11 @@ impl Builder {
             let (face, after) = rest.split_at(count as usize);
             rest = after;
             let points: Vec<[f32; 3]> = face.iter().map(|corner| obj.positions[corner[0] as usize]).collect();
-            for number in polygon::triangulate(&points).into_iter().flatten() {
+            let triangles = polygon::triangulate(&points).ok_or_else(|| {
+                let most = polygon::MOST_CORNERS;
+                format!("a polygon of {count} corners is not convex; of such, texbake cuts those of up to {most}")
+            })?;
+            for number in triangles.into_flattened() {
                 // What only some corners of a face have, none of its part has.
                 let [position, texcoord, normal] = face[number];
                 let texcoord = if part.has_texcoords { texcoord } else { text::NONE };
@@ -137,7 +147,7 @@ impl Builder {
         }
         let indices_at = self.add("SCALAR", indices.len(), 34963, bytemuck::cast_slice(&indices));
         self.accessors[indices_at]["componentType"] = 5125.into();
-        json!({ "attributes": attributes, "indices": indices_at })
+        Ok(json!({ "attributes": attributes, "indices": indices_at }))
     }
 
     fn add(&mut self, type_: &str, count: usize, target: u32, bytes: &[u8]) -> usize {

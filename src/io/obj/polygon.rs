@@ -1,19 +1,50 @@
 //! Polygons as triangles.
 
-/// Triangles of a polygon's corners, by number: a fan if it is convex, else ears cut off one by one.
-pub(super) fn triangulate(points: &[[f32; 3]]) -> Vec<[usize; 3]> {
+/// The most corners of a polygon that is not convex: cutting one takes time with the square of its corners.
+pub(super) const MOST_CORNERS: usize = 1 << 14;
+
+/// Triangles of a polygon's corners, by number: a fan if it is convex, else ears cut off one by one. `None` if it is
+/// not convex and has more than [`MOST_CORNERS`].
+pub(super) fn triangulate(points: &[[f32; 3]]) -> Option<Vec<[usize; 3]>> {
     let flat = flattened(points);
     let mut rest: Vec<usize> = (0..points.len()).collect();
     let mut triangles = Vec::with_capacity(points.len().saturating_sub(2));
-    let is_convex = (0..rest.len()).all(|at| turn(&flat, around(&rest, at)) >= 0.0);
-    while !is_convex && rest.len() > 3 {
-        // None is left where edges cross: then any triangles are as good as others.
-        let Some(ear) = (0..rest.len()).find(|&at| is_ear(&flat, &rest, at)) else { break };
-        triangles.push(around(&rest, ear));
-        rest.remove(ear);
+    if !(0..rest.len()).all(|at| turn(&flat, around(&rest, at)) >= 0.0) {
+        if points.len() > MOST_CORNERS {
+            return None;
+        }
+        cut_ears(&flat, &mut rest, &mut triangles);
     }
     triangles.extend(rest.windows(2).skip(1).map(|pair| [rest[0], pair[0], pair[1]]));
-    triangles
+    Some(triangles)
+}
+
+/// Cuts off the first ear, until three corners are left, or no ear: then edges cross, and any triangles are as good as
+/// others.
+///
+/// Around a simple polygon, cutting an ear changes nothing but its two neighbours. Where edges touch or cross, others
+/// may have become ears: they are looked for again, but not without end.
+fn cut_ears(flat: &[[f64; 2]], rest: &mut Vec<usize>, triangles: &mut Vec<[usize; 3]>) {
+    let all = |rest: &[usize]| -> Vec<bool> { (0..rest.len()).map(|at| is_ear(flat, rest, at)).collect() };
+    let mut ears = all(rest);
+    let mut searches = 8;
+    while rest.len() > 3 {
+        let Some(ear) = ears.iter().position(|is_ear| *is_ear) else {
+            searches -= 1;
+            ears = all(rest);
+            if searches == 0 || !ears.contains(&true) {
+                return;
+            }
+            continue;
+        };
+        triangles.push(around(rest, ear));
+        rest.remove(ear);
+        ears.remove(ear);
+        let count = rest.len();
+        for neighbour in [(ear + count - 1) % count, ear % count] {
+            ears[neighbour] = is_ear(flat, rest, neighbour);
+        }
+    }
 }
 
 /// The corner at a place, between its neighbours.
@@ -62,7 +93,7 @@ mod tests {
     #[test]
     fn triangles_stay_inside() {
         let point = |&[x, y]: &[f32; 2]| [5.0, x, y];
-        let of = |corners: &[[f32; 2]]| triangulate(&corners.iter().map(point).collect::<Vec<_>>());
+        let of = |corners: &[[f32; 2]]| triangulate(&corners.iter().map(point).collect::<Vec<_>>()).unwrap();
         assert_eq!(of(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), [[0, 1, 2], [0, 2, 3]]);
         assert_eq!(of(&[[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]]), [[0, 1, 2], [0, 2, 3]]);
         // An arrow's head: the diagonal from its first corner would lie outside.
@@ -79,6 +110,6 @@ mod tests {
             assert!(areas.iter().all(|area| *area >= 0.0));
             assert_eq!(areas.iter().sum::<f32>(), 5.0);
         }
-        assert_eq!(triangulate(&[[0.0; 3]; 5]), [[0, 1, 2], [0, 2, 3], [0, 3, 4]]);
+        assert_eq!(triangulate(&[[0.0; 3]; 5]).unwrap(), [[0, 1, 2], [0, 2, 3], [0, 3, 4]]);
     }
 }

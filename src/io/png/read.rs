@@ -1,13 +1,13 @@
 //! PNG height and normal maps, read.
 
 use crate::error::{Error, Result};
-use crate::io::damage::{damaged, truncated};
+use crate::io::damage::{damaged, io_reason};
 use crate::io::samples::{DecodedWhole, Layout, Opened, SampleRows, Samples, bytes_mut, len};
 use crate::io::{input, limits, srgb};
 use crate::map::{HeightType, HeightsMut};
 use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Reader, Transformations};
 use std::fs::File;
-use std::io::{BufReader, ErrorKind};
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// Compressed bytes that are read from the file at once.
@@ -133,8 +133,7 @@ fn to_native_order(samples: HeightsMut<'_>) {
 /// The decoder's reason, with the file and the way out.
 fn reason(path: &Path) -> impl FnOnce(DecodingError) -> Error + '_ {
     move |error| match error {
-        DecodingError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => truncated(path),
-        DecodingError::IoError(error) => Error::io(path)(error),
+        DecodingError::IoError(error) => io_reason(path, error),
         DecodingError::LimitsExceeded => damaged(path, "it needs too much memory beside its rows"),
         error => damaged(path, error),
     }

@@ -1,5 +1,6 @@
 //! TIFF, GeoTIFF and BigTIFF, by strips and tiles.
 
+mod directory;
 mod read;
 mod write;
 

@@ -1,13 +1,14 @@
 //! TIFF height and normal maps, read.
 
+use super::directory;
 use crate::error::{Error, Result};
-use crate::io::damage::{damaged, truncated};
+use crate::io::damage::{damaged, io_reason};
 use crate::io::groups::{GroupDecoder, GroupedRows};
 use crate::io::samples::{Layout, NoData, Opened, Samples};
 use crate::io::{input, limits, srgb};
 use crate::map::HeightType;
 use std::fs::File;
-use std::io::{BufReader, ErrorKind};
+use std::io::{BufReader, Seek};
 use std::path::{Path, PathBuf};
 use tiff::decoder::{ChunkType, Decoder, DecodingResult, DecodingSampleType, Limits};
 use tiff::tags::{PlanarConfiguration, Tag};
@@ -47,11 +48,15 @@ impl Grid {
 /// A signed sample v becomes v + 2^(b-1): of heights, the slopes are the same.
 pub(crate) fn open(path: &Path, max_bytes: u64) -> Result<Opened> {
     let file = input::open(path)?;
+    let file_bytes = file.metadata().map_err(Error::io(path))?.len();
     let buffer_bytes = max_bytes.try_into().unwrap_or(usize::MAX);
     let mut decoder_limits = Limits::default();
     decoder_limits.decoding_buffer_size = buffer_bytes;
     decoder_limits.intermediate_buffer_size = buffer_bytes;
-    let decoder = Decoder::new(BufReader::new(file)).map_err(reason(path))?;
+    let mut file = BufReader::new(file);
+    directory::check(path, &mut file, file_bytes, max_bytes)?;
+    file.rewind().map_err(Error::io(path))?;
+    let decoder = Decoder::new(file).map_err(reason(path))?;
     let mut decoder = decoder.with_limits(decoder_limits);
 
     let (width, height) = decoder.dimensions().map_err(reason(path))?;
@@ -230,10 +235,7 @@ impl Place {
 /// The decoder's reason, with the file and the way out.
 fn reason(path: &Path) -> impl FnOnce(TiffError) -> Error + '_ {
     move |error| match error {
-        TiffError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => truncated(path),
-        // The decoders of compressed strips report damage as the system's errors, without a system's number.
-        TiffError::IoError(error) if error.raw_os_error().is_none() => damaged(path, error),
-        TiffError::IoError(error) => Error::io(path)(error),
+        TiffError::IoError(error) => io_reason(path, error),
         TiffError::LimitsExceeded => {
             Error::file(path, "it needs more memory than the limit", "raise it with --max-bytes")
         }

@@ -1,12 +1,13 @@
 //! Heights into normal maps, parallax maps, and both in one pass.
 
-use super::inputs::{KINDS, Kind, heights, name_of, normal_formats};
-use super::{CODES, Case, Extent, HEIGHT_TYPES, PRECISIONS, every_edges, turns};
+use super::inputs::{Boundary, KINDS, Kind, heights, name_of, normal_formats};
+use super::{CODES, Case, Extent, HEIGHT_TYPES, PRECISIONS, every_edges, some};
 use crate::error::Result;
 use crate::exact::{Rational, Scale};
-use crate::map::{Convention, Edges, HeightType, NormalFormat, ParallaxFormat};
+use crate::map::{Convention, Depth, Edges, Encoding, HeightType, NormalFormat, ParallaxFormat};
 use crate::ops::Precision;
 use crate::ops::bake::{BakeOptions, Filter};
+use crate::verify::chance::Chance;
 use crate::verify::job::{BakeJob, Job};
 
 /// Scales in texels: gentle, steep, zero, negative, parts as long as they may be, and those of the documentation.
@@ -25,11 +26,20 @@ struct Outputs {
 
 pub(super) fn cases(extent: Extent) -> Vec<Case> {
     let mut cases = Vec::new();
+    let mut draw = Chance::named(0, "bakes");
     for precision in PRECISIONS {
         for height_type in HEIGHT_TYPES {
-            for outputs in every_outputs(extent) {
-                for kind in kinds(extent, precision, cases.len()) {
-                    add(&mut cases, extent, precision, height_type, outputs, kind);
+            for outputs in every_outputs(extent, &mut draw) {
+                for &kind in kinds(precision) {
+                    for (filter, edges, convention) in options(extent, precision, height_type, kind, &mut draw) {
+                        // Parallax maps have no green.
+                        if outputs.normal.is_none() && convention == Convention::Dx && extent == Extent::Full {
+                            continue;
+                        }
+                        let scale = draw.of(scales(precision, height_type));
+                        let options = (edges, filter, convention, scale);
+                        cases.push(case(precision, height_type, outputs, kind, options));
+                    }
                 }
             }
         }
@@ -37,54 +47,62 @@ pub(super) fn cases(extent: Extent) -> Vec<Case> {
     cases
 }
 
-/// `fast` promises nothing for slopes without measure.
-fn kinds(extent: Extent, precision: Precision, turn: usize) -> Vec<Kind> {
+/// `fast` promises nothing for heights without measure.
+fn kinds(precision: Precision) -> &'static [Kind] {
     match precision {
-        Precision::Exact => turns(extent, turn, &KINDS),
-        Precision::Fast => turns(extent, turn, &[Kind::Random, Kind::Small, Kind::Boundaries]),
+        Precision::Exact => &KINDS,
+        Precision::Fast => &[Kind::Random, Kind::Small, Kind::Boundaries],
     }
 }
 
-fn every_outputs(extent: Extent) -> Vec<Outputs> {
-    let parallax = |(encoding, depth)| ParallaxFormat { encoding, depth };
-    let normals = normal_formats().into_iter().map(|format| Outputs {
-        operation: "normal map",
-        normal: Some(format),
-        parallax: None,
-    });
-    let parallaxes = CODES.into_iter().map(|codes| Outputs {
-        operation: "parallax map",
-        normal: None,
-        parallax: Some(parallax(codes)),
-    });
-    let both = normal_formats().into_iter().enumerate().flat_map(|(turn, normal)| {
-        turns(extent, 3 * turn, &CODES).into_iter().map(move |codes| Outputs {
-            operation: "both in one pass",
-            normal: Some(normal),
-            parallax: Some(parallax(codes)),
-        })
-    });
-    normals.chain(parallaxes).chain(both).collect()
+/// Scales for which the bounds of `fast` hold are all for integers; float heights that differ little lose the digits
+/// that they share.
+fn scales(precision: Precision, height_type: HeightType) -> &'static [&'static str] {
+    match (precision, height_type) {
+        (Precision::Fast, HeightType::F32) => &SCALES[..1],
+        _ => &SCALES,
+    }
 }
 
-fn add(
-    cases: &mut Vec<Case>,
+/// Filters, edges and conventions. The search for boundaries is one among central differences, and so is what `fast`
+/// promises of float heights: sums of differences may cancel.
+fn options(
     extent: Extent,
     precision: Precision,
     height_type: HeightType,
-    outputs: Outputs,
     kind: Kind,
-) {
-    // Numbers without a common divisor, so that the choices go round at different times.
-    let turn = cases.len();
-    for edges in turns(extent, turn, &every_edges()) {
-        for filter in turns(extent, turn / 2, &FILTERS) {
-            for convention in turns(extent, turn / 3, &[Convention::Gl, Convention::Dx]) {
-                let scale = SCALES[(cases.len() / 4) % SCALES.len()];
-                cases.push(case(precision, height_type, outputs, kind, (edges, filter, convention, scale)));
+    draw: &mut Chance,
+) -> Vec<(Filter, Edges, Convention)> {
+    let may_cancel = precision == Precision::Fast && height_type == HeightType::F32;
+    let filters = if kind == Kind::Boundaries || may_cancel { &FILTERS[..1] } else { &FILTERS };
+    let mut options = Vec::new();
+    for filter in some(extent, draw, filters) {
+        for edges in some(extent, draw, &every_edges()) {
+            for convention in some(extent, draw, &[Convention::Gl, Convention::Dx]) {
+                options.push((filter, edges, convention));
             }
         }
     }
+    options
+}
+
+/// A normal map of every format, a parallax map of every format, and pairs of them.
+fn every_outputs(extent: Extent, draw: &mut Chance) -> Vec<Outputs> {
+    let parallax = |(encoding, depth)| ParallaxFormat { encoding, depth };
+    let mut outputs = Vec::new();
+    for format in normal_formats() {
+        outputs.push(Outputs { operation: "normal map", normal: Some(format), parallax: None });
+    }
+    for codes in CODES {
+        outputs.push(Outputs { operation: "parallax map", normal: None, parallax: Some(parallax(codes)) });
+    }
+    for normal in normal_formats() {
+        for codes in some(extent, draw, &CODES) {
+            let (normal, parallax) = (Some(normal), Some(parallax(codes)));
+            outputs.push(Outputs { operation: "both in one pass", normal, parallax });
+        }
+    }
+    outputs
 }
 
 fn case(
@@ -105,7 +123,11 @@ fn case(
             / scale.denominator() as f64
             / (2.0 * height_type.greatest_code().map_or(65_535.0, f64::from));
         let options = BakeOptions { scale: Scale::Texels(scale), filter, edges, normal, parallax, precision };
-        Ok(Job::Bake(BakeJob { heights: heights(kind, height_type, per_height, chance)?, options }))
+        let near = Boundary {
+            per_height,
+            codes: normal.map_or((Encoding::Unorm, Depth::Bits8), |it| (it.encoding, it.depth)),
+        };
+        Ok(Job::Bake(BakeJob { heights: heights(kind, height_type, near, chance)?, options }))
     };
     Case::new(operation, precision, &[&height_type, &formats, &filter, &edge_names, &scale_name, &kind], make)
 }

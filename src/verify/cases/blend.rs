@@ -1,12 +1,13 @@
 //! Two normal maps into one, by every method.
 
-use super::inputs::{KINDS, Kind, heights, name_of, normal_formats, normals};
-use super::{Case, Extent, PRECISIONS, turns};
+use super::inputs::{KINDS, Kind, any_heights, name_of, normal_formats, normals};
+use super::{Case, Extent, PRECISIONS, some};
 use crate::error::Result;
 use crate::exact::Rational;
 use crate::map::{Convention, HeightType, NormalFormat};
 use crate::ops::Precision;
 use crate::ops::blend::{BlendMethod, BlendOptions};
+use crate::verify::chance::Chance;
 use crate::verify::job::{BlendJob, Job};
 
 /// A method by its name, with its weights or the type of its mask.
@@ -54,20 +55,23 @@ impl Method {
 pub(super) fn cases(extent: Extent) -> Vec<Case> {
     let formats = normal_formats();
     let mut cases = Vec::new();
+    let mut draw = Chance::named(0, "blends");
     for precision in PRECISIONS {
+        let kinds = if precision == Precision::Exact { &KINDS[..3] } else { &KINDS[..2] };
         for (number, method) in METHODS.into_iter().enumerate() {
             // `fast` promises nothing where large weights cancel.
             if precision == Precision::Fast && matches!(method, Method::Weighted("65535", _)) {
                 continue;
             }
-            // Of quick runs every third for each method, and each for some.
+            // Of quick runs every third format for each method, and each for some.
             let (first, step) = if extent == Extent::Quick { (number % 3, 3) } else { (0, 1) };
-            for (at, &base) in formats.iter().enumerate().skip(first).step_by(step) {
-                // Other partners for each method.
-                for detail in turns(extent, 3 * at + cases.len() / formats.len(), &formats) {
-                    for format in turns(extent, 5 * at + cases.len() / 5, &formats) {
-                        cases.push(case(extent, precision, method, [base, detail, format], cases.len()));
-                    }
+            for &base in formats.iter().skip(first).step_by(step) {
+                for detail in some(extent, &mut draw, &formats) {
+                    let formats = [base, detail, draw.of(&formats)].map(|format| {
+                        let convention = draw.of(&[Convention::Gl, Convention::Dx]);
+                        NormalFormat { convention, ..format }
+                    });
+                    cases.extend(kinds.iter().map(|&kind| case(precision, method, formats, kind)));
                 }
             }
         }
@@ -75,26 +79,16 @@ pub(super) fn cases(extent: Extent) -> Vec<Case> {
     cases
 }
 
-fn case(
-    extent: Extent,
-    precision: Precision,
-    method: Method,
-    [base, detail, format]: [NormalFormat; 3],
-    turn: usize,
-) -> Case {
-    let green = |format, turn: usize| NormalFormat { convention: [Convention::Gl, Convention::Dx][turn % 2], ..format };
-    let [base, detail, format] = [green(base, turn), green(detail, turn / 2), green(format, turn / 3)];
-    let kinds = if precision == Precision::Exact { &KINDS[..3] } else { &[Kind::Random, Kind::Small] };
-    let kind = turns(Extent::Quick, turn + usize::from(extent == Extent::Full), kinds)[0];
-    let names = [name_of(base), name_of(detail), name_of(format)];
-    let of = format!("{} and {} to {}", names[0], names[1], names[2]);
+fn case(precision: Precision, method: Method, [base, detail, format]: [NormalFormat; 3], kind: Kind) -> Case {
+    let of = format!("{} and {} to {}", name_of(base), name_of(detail), name_of(format));
     Case::new("blend", precision, &[&method.name(), &of, &kind], move |chance| {
         let options = BlendOptions { method: method.method()?, format, precision, ..Default::default() };
+        let size = kind.size(chance)?;
         let mask = match method {
-            Method::Masked(mask) => Some(heights(kind, mask, 1.0, chance)?),
+            Method::Masked(mask) => Some(any_heights(kind, mask, size, chance)?),
             _ => None,
         };
-        let (base, detail) = (normals(kind, base, chance)?, normals(kind, detail, chance)?);
+        let (base, detail) = (normals(kind, base, size, chance)?, normals(kind, detail, size, chance)?);
         Ok(Job::Blend(BlendJob { base, detail, mask, options }))
     })
 }

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::exact::CodeRounding;
-use crate::map::{Channels, Codes, Grid, HeightMap, HeightType, NormalFormat, NormalMap, Size};
+use crate::map::{Channels, Codes, Depth, Encoding, Grid, HeightMap, HeightType, NormalFormat, NormalMap, Size};
 use crate::verify::chance::Chance;
 use half::f16;
 use std::fmt;
@@ -34,18 +34,46 @@ impl fmt::Display for Kind {
 }
 
 /// Not a multiple of the four texels of an invocation, nor of a workgroup, and more than one of both.
-pub(super) const WIDTH: usize = 67;
-pub(super) const HEIGHT: usize = 12;
+const WIDTH: usize = 67;
+const HEIGHT: usize = 12;
 
-/// A height map. The slope is `per_height` times a central difference, for the kind that searches for boundaries.
-pub(super) fn heights(kind: Kind, height_type: HeightType, per_height: f64, chance: &mut Chance) -> Result<HeightMap> {
-    if kind == Kind::Boundaries {
-        return near_boundaries(height_type, per_height, chance);
+impl Kind {
+    /// The usual size; sometimes one that is its own neighbour, two texels wide, or wider than a workgroup.
+    pub fn size(self, chance: &mut Chance) -> Result<Size> {
+        let usual = (WIDTH, HEIGHT);
+        let (width, height) = match self {
+            Self::Random | Self::Extreme => chance.of(&[usual, usual, usual, (1, 1), (1, 9), (2, 5), (4, 1), (300, 3)]),
+            Self::Small | Self::Boundaries => usual,
+        };
+        Size::new(width, height)
     }
+}
+
+/// What is searched for boundaries: how steep a difference of heights is, and the codes that are stored.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Boundary {
+    /// Slope of a difference of 1 between the texels on either side, in codes of the heights.
+    pub per_height: f64,
+    /// Of a float map those of 8 bits are as good as any.
+    pub codes: (Encoding, Depth),
+}
+
+/// A height map whose normals are stored as `near` says, for the kind that searches for boundaries.
+pub(super) fn heights(kind: Kind, height_type: HeightType, near: Boundary, chance: &mut Chance) -> Result<HeightMap> {
+    if kind == Kind::Boundaries {
+        return near_boundaries(height_type, near, chance);
+    }
+    let size = kind.size(chance)?;
+    any_heights(kind, height_type, size, chance)
+}
+
+/// A height map of any kind but boundaries.
+pub(super) fn any_heights(kind: Kind, height_type: HeightType, size: Size, chance: &mut Chance) -> Result<HeightMap> {
+    let (width, height) = (size.width(), size.height());
     Ok(match height_type {
-        HeightType::U8 => Grid::from_fn(WIDTH, HEIGHT, |_, _| code(kind, 255, chance) as u8)?.into(),
-        HeightType::U16 => Grid::from_fn(WIDTH, HEIGHT, |_, _| code(kind, 65_535, chance) as u16)?.into(),
-        HeightType::F32 => Grid::from_fn(WIDTH, HEIGHT, |_, _| float_height(kind, chance))?.try_into()?,
+        HeightType::U8 => Grid::from_fn(width, height, |_, _| code(kind, 255, chance) as u8)?.into(),
+        HeightType::U16 => Grid::from_fn(width, height, |_, _| code(kind, 65_535, chance) as u16)?.into(),
+        HeightType::F32 => Grid::from_fn(width, height, |_, _| float_height(kind, chance))?.try_into()?,
     })
 }
 
@@ -70,15 +98,15 @@ fn float_height(kind: Kind, chance: &mut Chance) -> f32 {
 }
 
 /// Heights whose texels in columns 4i + 1 and rows 3j + 1 have chosen differences to either side: those of 64 random
-/// pairs whose normal comes nearest to a boundary between two unorm codes of 8 bits.
-fn near_boundaries(height_type: HeightType, per_height: f64, chance: &mut Chance) -> Result<HeightMap> {
+/// pairs whose normal comes nearest to a boundary between two codes.
+fn near_boundaries(height_type: HeightType, near: Boundary, chance: &mut Chance) -> Result<HeightMap> {
     let greatest = f64::from(height_type.greatest_code().unwrap_or(65_535));
     let mut heights = vec![0.0; WIDTH * HEIGHT];
     for y in (1..HEIGHT - 1).step_by(3) {
         for x in (1..WIDTH - 1).step_by(4) {
             let mut any = || (chance.below(greatest as u64 + 1) as f64, chance.below(greatest as u64 + 1) as f64);
             let nearest = (0..64).map(|_| (any(), any())).min_by(|a, b| {
-                let far = |(h, v): &((f64, f64), (f64, f64))| off_middle([h.1 - h.0, v.1 - v.0], per_height);
+                let far = |(h, v): &((f64, f64), (f64, f64))| near.distance([h.1 - h.0, v.1 - v.0]);
                 far(a).total_cmp(&far(b))
             });
             let ((west, east), (north, south)) = nearest.unwrap_or_default();
@@ -98,18 +126,27 @@ fn near_boundaries(height_type: HeightType, per_height: f64, chance: &mut Chance
     })
 }
 
-/// How far 127.5 (v + 1) of the components is from the middle between two codes, at the nearest of them.
-fn off_middle([gx, gy]: [f64; 2], per_height: f64) -> f64 {
-    let [x, y] = [gx, gy].map(|sum| per_height * sum);
-    let length = (x * x + y * y + 1.0).sqrt();
-    let off = |component: f64| ((127.5 * (component / length + 1.0)).fract() - 0.5).abs();
-    // A component of zero is a tie whatever the other is.
-    off(x).min(off(y)).min(off(1.0))
+impl Boundary {
+    /// How far the components are from the middle between two codes, at the nearest of them.
+    fn distance(&self, [gx, gy]: [f64; 2]) -> f64 {
+        let [x, y] = [gx, gy].map(|sum| self.per_height * sum);
+        let length = (x * x + y * y + 1.0).sqrt();
+        let (encoding, depth) = self.codes;
+        let greatest = encoding.greatest_code(depth).map_or(255.0, f64::from);
+        let off = |part: f64| {
+            let v = part / length;
+            let code = match encoding {
+                Encoding::Snorm | Encoding::Biased => greatest * v,
+                Encoding::Unorm | Encoding::Float => greatest * (v + 1.0) / 2.0,
+            };
+            (code.rem_euclid(1.0) - 0.5).abs()
+        };
+        off(x).min(off(y)).min(off(1.0))
+    }
 }
 
 /// A normal map in any format. Its texels are unit vectors that lean up to 60 degrees, or, of kind extreme, any codes.
-pub(super) fn normals(kind: Kind, format: NormalFormat, chance: &mut Chance) -> Result<NormalMap> {
-    let size = Size::new(WIDTH, HEIGHT)?;
+pub(super) fn normals(kind: Kind, format: NormalFormat, size: Size, chance: &mut Chance) -> Result<NormalMap> {
     let channels = format.channels.count();
     let texel = format.texel();
     let mut codes = Codes::zeroed(format.depth, size.texels() * channels);

@@ -1,36 +1,46 @@
 //! Heights and given normals into parallax maps.
 
-use super::inputs::{KINDS, Kind, heights, name_of, normal_formats, normals};
-use super::{CODES, Case, Extent, HEIGHT_TYPES, PRECISIONS, turns};
-use crate::map::{Convention, NormalFormat, ParallaxFormat};
+use super::inputs::{KINDS, Kind, any_heights, name_of, normal_formats, normals};
+use super::{CODES, Case, Extent, HEIGHT_TYPES, PRECISIONS, some};
+use crate::map::{Convention, Depth, Encoding, HeightType, NormalFormat, ParallaxFormat};
 use crate::ops::Precision;
+use crate::verify::chance::Chance;
 use crate::verify::job::{Job, ParallaxJob};
 
 pub(super) fn cases(extent: Extent) -> Vec<Case> {
     let mut cases = Vec::new();
+    let mut draw = Chance::named(0, "parallax maps of given normals");
     for precision in PRECISIONS {
+        let kinds = if precision == Precision::Exact { &KINDS[..3] } else { &KINDS[..2] };
         for height_type in HEIGHT_TYPES {
             for normal_format in normal_formats() {
-                // Another place in the row for each height type: every format meets every other in the end.
-                for codes in turns(extent, cases.len() + cases.len() / CODES.len(), &CODES) {
-                    let (encoding, depth) = codes;
-                    let format = ParallaxFormat { encoding, depth };
-                    let convention = [Convention::Gl, Convention::Dx][cases.len() % 2];
-                    let normal_format = NormalFormat { convention, ..normal_format };
-                    let kinds = if precision == Precision::Exact { &KINDS[..] } else { &[Kind::Random, Kind::Small] };
-                    for kind in turns(extent, cases.len() / 3, kinds) {
-                        let of = format!("{encoding} {depth}");
-                        let choices = [&height_type as _, &name_of(normal_format) as _, &of as _, &kind as _];
-                        let make = move |chance: &mut _| {
-                            let heights = heights(kind, height_type, 1.0, chance)?;
-                            let normals = normals(kind, normal_format, chance)?;
-                            Ok(Job::Parallax(ParallaxJob { heights, normals, format, precision }))
-                        };
-                        cases.push(Case::new("parallax map of given normals", precision, &choices, make));
+                for convention in some(extent, &mut draw, &[Convention::Gl, Convention::Dx]) {
+                    for codes in some(extent, &mut draw, &CODES) {
+                        for &kind in kinds {
+                            let normals = NormalFormat { convention, ..normal_format };
+                            cases.push(case(precision, height_type, normals, codes, kind));
+                        }
                     }
                 }
             }
         }
     }
     cases
+}
+
+fn case(
+    precision: Precision,
+    height_type: HeightType,
+    given: NormalFormat,
+    (encoding, depth): (Encoding, Depth),
+    kind: Kind,
+) -> Case {
+    let stored = format!("{encoding} {depth}");
+    let choices = [&height_type as _, &name_of(given) as _, &stored as _, &kind as _];
+    Case::new("parallax map of given normals", precision, &choices, move |chance| {
+        let size = kind.size(chance)?;
+        let heights = any_heights(kind, height_type, size, chance)?;
+        let normals = normals(kind, given, size, chance)?;
+        Ok(Job::Parallax(ParallaxJob { heights, normals, format: ParallaxFormat { encoding, depth }, precision }))
+    })
 }

@@ -14,6 +14,9 @@ const PATIENCE_SECONDS = 120;
 // Differing cases that are shown in full; the report has all of them.
 const SHOWN_PROBLEMS = 30;
 
+// Cases whose kernels are compiled while another one runs: browsers compile on several threads.
+const CASES_AHEAD = 4;
+
 // The tab stays usable if no turn of ours is longer.
 const TURN_MILLISECONDS = 40;
 
@@ -28,8 +31,9 @@ async function verify() {
 
     const gpu = await openGpu(kernels).catch((error) => ({ unusable: messageOf(error) }));
     showDevice(notes, gpu);
-    for (const recording of cases) {
-        showProgress(results.length, cases.length, recording.name);
+    for (const [number, recording] of cases.entries()) {
+        showProgress(number, cases.length, recording.name);
+        compileAhead(gpu, cases.slice(number + 1, number + 1 + CASES_AHEAD));
         const result = gpu.unusable ? failed(recording, gpu.unusable) : await resultOf(gpu, recording);
         results.push(result);
         rows.get(recording).add(result);
@@ -37,7 +41,7 @@ async function verify() {
     }
 
     const report = reportOf(notes, gpu, results, performance.now() - started);
-    showVerdict(report, gpu.unusable);
+    showVerdict(report);
     showProblems(results, gpu.unusable);
     offerReport(report);
     tellAutomation(report);
@@ -61,7 +65,8 @@ async function openGpu(kernels) {
         );
     }
     const device = await adapter.requestDevice();
-    const gpu = { adapter, device, lost: null, kernels, modules: new Map(), pipelines: new Map(), compiled: [] };
+    const info = adapter.info ?? {};
+    const gpu = { adapter, info, device, lost: null, kernels, modules: new Map(), pipelines: new Map(), compiled: [] };
     gpu.loss = device.lost.then(({ reason, message }) => {
         gpu.lost = `The device was lost: ${message || reason}`;
         throw new Error(gpu.lost);
@@ -93,6 +98,14 @@ function pipelineOf(gpu, { kernel, constants }) {
         gpu.pipelines.set(key, compile(gpu, kernel, constants));
     }
     return gpu.pipelines.get(key);
+}
+
+function compileAhead(gpu, cases) {
+    if (gpu.unusable || gpu.lost) {
+        return;
+    }
+    // What fails here fails again when its case is run.
+    cases.flatMap(({ passes }) => passes).forEach((pass) => pipelineOf(gpu, pass).catch(() => {}));
 }
 
 async function compile(gpu, kernel, constants) {
@@ -229,7 +242,7 @@ function comparedMap(expected, outputs) {
     const code = CODES[expected.code];
     const [right, got] = [bytesOf(expected.bytes), rowsIn(outputs, expected)];
     const values = right.length / code.bytes;
-    const largest = { codes: 0, ulps: 0, difference: 0 };
+    const largest = { codes: 0, ulps: 0, degrees: 0 };
     let differences = 0;
     let first = null;
     for (let index = 0; index < values; index++) {
@@ -237,15 +250,15 @@ function comparedMap(expected, outputs) {
         if (gotBits === rightBits) {
             continue;
         }
-        const [a, b] = [code.value(gotBits), code.value(rightBits)];
-        const steps = Math.abs(code.order(gotBits) - code.order(rightBits));
+        const error = Math.abs(code.value(gotBits) - code.value(rightBits)) * code.perUnit;
+        const turned = isDirection(expected) ? degreesBetween(...[got, right].map((b) => texelAt(b, index, code))) : 0;
         if (code.unit !== null) {
-            largest[code.unit] = Math.max(largest[code.unit], steps);
+            // A difference from NaN is larger than any.
+            largest[code.unit] = Math.max(largest[code.unit], Number.isNaN(error) ? Infinity : error);
+            largest.degrees = Math.max(largest.degrees, turned || 0);
         }
-        if (code.isFloat) {
-            largest.difference = Math.max(largest.difference, Math.abs(a - b) || 0);
-        }
-        if (!isTolerated(expected.tolerance, steps, Math.abs(a - b))) {
+        const { tolerance } = expected;
+        if (!(tolerance && error <= tolerance[code.unit] && turned <= tolerance.degrees)) {
             differences += 1;
             first ??= differenceAt(expected, index, code, gotBits, rightBits);
         }
@@ -253,12 +266,21 @@ function comparedMap(expected, outputs) {
     return { values, differences, largest, first };
 }
 
-function isTolerated(tolerance, steps, difference) {
-    if (tolerance === "none") {
-        return false;
-    }
-    // NaN is within nothing.
-    return "codes" in tolerance ? steps <= tolerance.codes : difference <= tolerance.difference;
+// Whether texels are directions, stored finely enough for angles to say something.
+function isDirection({ code, channels }) {
+    return code === "f32" && channels === 3;
+}
+
+// The three components of the texel to which a code belongs.
+function texelAt(bytes, index, code) {
+    const first = index - (index % 3);
+    return [first, first + 1, first + 2].map((at) => code.value(bitsAt(bytes, at, code)));
+}
+
+// Zero where either has no direction.
+function degreesBetween([a, b, c], [x, y, z]) {
+    const across = Math.hypot(b * z - c * y, c * x - a * z, a * y - b * x);
+    return (Math.atan2(across, a * x + b * y + c * z) * 180) / Math.PI;
 }
 
 function differenceAt(expected, index, code, gotBits, rightBits) {
@@ -276,7 +298,7 @@ function differenceAt(expected, index, code, gotBits, rightBits) {
 
 function largestOf(all) {
     const most = (of) => Math.max(0, ...all.map((one) => one?.[of] ?? 0));
-    return { codes: most("codes"), ulps: most("ulps"), difference: most("difference") };
+    return { codes: most("codes"), ulps: most("ulps"), degrees: most("degrees") };
 }
 
 // The inputs that a differing value was made of, row by row; null beyond the border, where the edge mode decides.
@@ -308,16 +330,15 @@ function rowsIn(buffer, { place, row_words: rowWords, rows, row_bytes: rowBytes 
     return bytes;
 }
 
-// How codes are read: from bits to a value, and to a place in the order of all codes, of which neighbours differ by 1.
-const sameBits = (bits) => bits;
+// How codes are read, and what their differences are counted in: codes, or units in the last place of 1.
 const CODES = {
-    u8: { bytes: 1, value: sameBits, order: sameBits, unit: "codes" },
-    i8: { bytes: 1, value: signed(8), order: signed(8), unit: "codes" },
-    u16: { bytes: 2, value: sameBits, order: sameBits, unit: "codes" },
-    i16: { bytes: 2, value: signed(16), order: signed(16), unit: "codes" },
-    f16: { bytes: 2, value: halfFloat, order: floatOrder(16), unit: "ulps", isFloat: true },
-    f32: { bytes: 4, value: float, order: floatOrder(32), unit: "ulps", isFloat: true },
-    bits: { bytes: 4, value: sameBits, order: sameBits, unit: null },
+    u8: { bytes: 1, value: unsigned, unit: "codes", perUnit: 1 },
+    i8: { bytes: 1, value: signed(8), unit: "codes", perUnit: 1 },
+    u16: { bytes: 2, value: unsigned, unit: "codes", perUnit: 1 },
+    i16: { bytes: 2, value: signed(16), unit: "codes", perUnit: 1 },
+    f16: { bytes: 2, value: halfFloat, unit: "ulps", perUnit: 2 ** 10 },
+    f32: { bytes: 4, value: float, unit: "ulps", perUnit: 2 ** 23 },
+    bits: { bytes: 4, value: unsigned, unit: null, perUnit: 1 },
 };
 
 function bitsAt(bytes, index, code) {
@@ -328,13 +349,12 @@ function bitsAt(bytes, index, code) {
     return bits;
 }
 
-function signed(width) {
-    return (bits) => (bits < 2 ** (width - 1) ? bits : bits - 2 ** width);
+function unsigned(bits) {
+    return bits;
 }
 
-function floatOrder(width) {
-    const sign = 2 ** (width - 1);
-    return (bits) => (bits < sign ? bits : sign - bits);
+function signed(width) {
+    return (bits) => (bits < 2 ** (width - 1) ? bits : bits - 2 ** width);
 }
 
 function float(bits) {
@@ -352,7 +372,7 @@ function halfFloat(bits) {
 // A code for people and for the report: `212 (0xd4)`.
 function readable(code, bits) {
     const value = code.value(bits);
-    const number = code.isFloat ? (Object.is(value, -0) ? "-0" : String(Number(value.toPrecision(9)))) : value;
+    const number = code.unit === "ulps" ? (Object.is(value, -0) ? "-0" : String(Number(value.toPrecision(9)))) : value;
     const hexadecimal = `0x${bits.toString(16).padStart(2 * code.bytes, "0")}`;
     return code.unit === null ? hexadecimal : `${number} (${hexadecimal})`;
 }
@@ -364,17 +384,22 @@ function readable(code, bits) {
 function reportOf(notes, gpu, results, milliseconds) {
     const count = (result) => results.filter((one) => one.result === result).length;
     const sum = (of) => results.reduce((total, one) => total + one[of], 0);
-    return {
-        ...Object.fromEntries(notes),
-        browser: navigator.userAgent,
-        adapter: gpu.adapter ? wordsForAdapter(gpu.adapter.info) : null,
-        unusable: gpu.unusable ?? null,
+    const counts = {
         cases: results.length,
         agree: count("agrees"),
         differ: count("differs"),
         failed: count("failed"),
         values: sum("values"),
         differences: sum("differences"),
+    };
+    return {
+        ...Object.fromEntries(notes),
+        // An empty run proves nothing.
+        passed: counts.agree === counts.cases && counts.values > 0,
+        ...counts,
+        browser: navigator.userAgent,
+        adapter: gpu.adapter ? wordsForAdapter(gpu.info) : null,
+        unusable: gpu.unusable ?? null,
         seconds: Math.round(milliseconds) / 1000,
         limits: gpu.device ? limitsOf(gpu.device) : {},
         compiled: gpu.compiled ?? [],
@@ -387,10 +412,12 @@ function tellAutomation(report) {
     const failures = report.failed > 0 ? `, ${report.failed} failed` : "";
     console.log(`texbake verify: ${report.agree} cases agree, ${report.differ} differ${failures}`);
     const { results, compiled, limits, ...counts } = report;
-    const names = (result) => results.filter((one) => one.result === result).map(({ name }) => name);
+    const wrong = (result) => results.filter((one) => one.result === result);
+    const differing = wrong("differs").map(({ name, differences, largest }) => ({ name, differences, largest }));
+    const failing = wrong("failed").map(({ name }) => ({ name }));
     const slowest = compiled.toSorted((a, b) => b.milliseconds - a.milliseconds).slice(0, 5);
     const reasons = [...new Set(results.map(({ message }) => message).filter(Boolean))].slice(0, 5);
-    const brief = { ...counts, slowest, reasons, differing: names("differs"), failing: names("failed") };
+    const brief = { ...counts, slowest, reasons, differing, failing };
     console.log(`texbake verify report: ${JSON.stringify(brief)}`);
 }
 
@@ -490,32 +517,34 @@ class CaseRow {
 // `within 1 code`; nothing of exact bits.
 function tolerancesOf({ expected }) {
     const words = expected
-        .filter(({ tolerance }) => tolerance !== "none")
-        .map(({ code, tolerance }) => {
-            if ("codes" in tolerance) {
-                return CODES[code].isFloat ? `${tolerance.codes} ULP` : counted(tolerance.codes, "code");
-            }
-                return short(tolerance.difference);
-        });
-    return words.length > 0 ? `within ${[...new Set(words)].join(" and ")}` : "";
+        .filter(({ tolerance }) => tolerance)
+        .flatMap(({ code, channels, tolerance }) => [
+            wordsForError(CODES[code].unit, tolerance[CODES[code].unit]),
+            ...(isDirection({ code, channels }) ? [wordsForError("degrees", tolerance.degrees)] : []),
+        ]);
+    return words.length > 0 ? `within ${[...new Set(words)].join(", ")}` : "";
 }
 
-function wordsForLargest({ codes, ulps, difference }, values) {
-    const words = [];
-    if (codes > 0) {
-        words.push(counted(codes, "code"));
+function wordsForLargest(largest, values) {
+    const words = Object.entries(largest).flatMap(([unit, error]) => (error > 0 ? [wordsForError(unit, error)] : []));
+    return words.join(", ") || (values > 0 ? "none" : "");
+}
+
+function wordsForError(unit, error) {
+    switch (unit) {
+        case "codes":
+            return counted(error, "code");
+        case "ulps":
+            return `${short(error)} ulp`;
+        default:
+            return `${short(error)}°`;
     }
-    if (ulps > 0) {
-        const many = ulps < 1e6 ? ulps.toLocaleString("en") : ulps.toExponential(1);
-        words.push(`${short(difference)} (${many} ULP)`);
-    }
-    return words.join("; ") || (values > 0 ? "none" : "");
 }
 
 function showDevice(notes, gpu) {
     const facts = [...notes, ["browser", navigator.userAgent]];
     if (gpu.adapter) {
-        const { vendor, architecture, device, description, isFallbackAdapter } = gpu.adapter.info;
+        const { vendor, architecture, device, description, isFallbackAdapter } = gpu.info;
         facts.push(
             ["vendor", vendor || "not told by the browser"],
             ["architecture", architecture || "not told by the browser"],
@@ -555,24 +584,31 @@ function showProgress(done, all, name) {
     element("progress").value = done;
 }
 
-function showVerdict(report, unusable) {
-    const { cases, agree, differ, failed, values, seconds } = report;
-    const isGood = cases > 0 && agree === cases && values > 0;
-    const headline = isGood
-        ? "Every case agrees"
-        : unusable
-          ? "Nothing was compared"
-          : cases === 0
-            ? "This page holds no case"
-            : failed > 0 && differ === 0
-              ? `${failed} of ${cases} cases failed`
-              : `${differ} of ${cases} cases differ${failed > 0 ? `, and ${failed} failed` : ""}`;
+function showVerdict(report) {
+    const { passed, cases, values, seconds } = report;
+    const headline = headlineOf(report);
     const counts = `${counted(cases, "case")}, ${counted(values, "value")} compared in ${seconds.toFixed(1)} seconds.`;
     element("headline").textContent = headline;
-    element("summary").textContent = unusable ?? (cases === 0 ? "An empty run proves nothing." : counts);
-    element("verdict").dataset.state = isGood ? "good" : "bad";
+    element("summary").textContent = report.unusable ?? (cases === 0 ? "An empty run proves nothing." : counts);
+    element("verdict").dataset.state = passed ? "good" : "bad";
     element("progress").hidden = true;
     document.title = `${headline} · texbake verify`;
+}
+
+function headlineOf({ passed, unusable, cases, differ, failed }) {
+    if (passed) {
+        return "Every case agrees";
+    }
+    if (unusable) {
+        return "Nothing was compared";
+    }
+    if (cases === 0) {
+        return "This page holds no case";
+    }
+    if (differ === 0) {
+        return `${failed} of ${cases} cases failed`;
+    }
+    return `${differ} of ${cases} cases differ${failed > 0 ? `, and ${failed} failed` : ""}`;
 }
 
 // What this page itself did wrong: never a success, and never silence.
@@ -581,7 +617,9 @@ function showBroken(error) {
     element("summary").textContent = error.stack ?? messageOf(error);
     element("verdict").dataset.state = "bad";
     document.title = "The page itself failed · texbake verify";
-    console.log(`texbake verify: 0 cases agree, 0 differ, the page failed: ${messageOf(error)}`);
+    const report = { passed: false, unusable: `The page itself failed: ${messageOf(error)}` };
+    console.log("texbake verify: 0 cases agree, 0 differ, the page itself failed");
+    console.log(`texbake verify report: ${JSON.stringify(report)}`);
 }
 
 function showProblems(results, unusable) {
@@ -683,9 +721,9 @@ function counted(count, noun) {
     return `${count.toLocaleString("en")} ${noun}${count === 1 ? "" : "s"}`;
 }
 
-// Two digits of any magnitude.
+// Three digits of any magnitude.
 function short(number) {
-    return number >= 0.01 && number < 1000 ? String(Number(number.toPrecision(2))) : number.toExponential(1);
+    return number >= 0.01 && number < 1e5 ? String(Number(number.toPrecision(3))) : number.toExponential(1);
 }
 
 function bytesOf(base64) {

@@ -2,7 +2,7 @@
 
 use super::builder::F32;
 use super::samples::{models, sample};
-use crate::io::damage::{MAX_BYTES, assert_no_panic, variants};
+use crate::io::damage::{MAX_BYTES, assert_no_panic, read_variants, variants};
 use crate::io::support::{Folder, Noise};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -26,6 +26,23 @@ fn convert(path: &Path) -> Result<(), Error> {
 fn damaged_bytes_never_panic() {
     let folder = Folder::new();
     assert_no_panic(&models(&folder), convert);
+}
+
+#[test]
+fn damaged_materials_are_warnings() {
+    let folder = Folder::new();
+    let model = models(&folder).pop().unwrap();
+    folder.file("a.png", b"");
+    let (read, refused) = read_variants(&folder.path("m.mtl"), |_| convert(&model));
+    assert!(read > 0 && refused == 0, "materials alone make no model unreadable: {refused} were refused");
+}
+
+#[test]
+fn damaged_buffers_beside_a_model_never_panic() {
+    let folder = Folder::new();
+    let model = models(&folder).swap_remove(1);
+    let (read, refused) = read_variants(&folder.path("m.bin"), |_| convert(&model));
+    assert!(read > 0 && refused > 0, "{read} were read, {refused} refused");
 }
 
 /// The numbers of a document, one after the other.

@@ -1,6 +1,6 @@
 //! Models: glTF in and out, as `read`, `write`, `refused` and `damage` say, before the Khronos validator too.
 
-mod builder;
+pub mod builder;
 mod damage;
 mod read;
 mod refused;

@@ -109,7 +109,7 @@ fn accessors_that_reach_too_far() {
         json["accessors"][0]["count"] = (1u64 << 50).into();
     });
     let expected = "mesh 0, primitive 0: accessors[0] claims 1125899906842624 elements of 12 bytes; the limit is \
-                    4294967296 bytes: raise it with --max-bytes";
+                    134217728 bytes, a part of --max-bytes: raise it";
     assert_eq!(claims, expected);
     let sparse = damaged(|json| {
         json["accessors"][0]["sparse"] = json!({

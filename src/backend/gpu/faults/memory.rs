@@ -2,11 +2,15 @@
 
 use super::{Job, bakers, jobs, lavapipe, lavapipe_below, opened, tangents};
 use crate::Baker;
+use crate::backend::gpu::bake as device_bake;
 use crate::backend::gpu::device::{Device, lock};
-use crate::map::{Edge, Edges, Grid, HeightMap};
-use crate::ops::bake::NormalOptions;
+use crate::map::{Edge, Edges, Grid, HeightMap, NormalFormat, NormalMap};
+use crate::ops::bake::{BakeOptions, BakePlan, NormalOptions};
 use crate::ops::tangents::TangentMethod;
+use crate::stream::{MapBands, MapSink};
+use std::process::Command;
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
 use wgpu::{DeviceDescriptor, MemoryBudgetThresholds, MemoryHints};
 
 /// Rows of 100 texels.
@@ -127,4 +131,55 @@ fn thresholds_of_a_budget_end_in_an_error_or_in_right_bytes() {
         }
         assert!((job.run)(&relieved).unwrap() == job.expected(), "{thresholds:?}");
     }
+}
+
+/// What lavapipe takes it takes from the process: a process of its own that may not grow, by prlimit of util-linux.
+#[cfg(target_os = "linux")]
+#[test]
+fn memory_that_the_system_refuses_the_driver_is_done_without() {
+    const CHILD: &str = "TEXBAKE_TEST_IN_LITTLE_MEMORY";
+    if std::env::var_os(CHILD).is_some() {
+        return bake_in_little_memory();
+    }
+    if lavapipe().is_none() {
+        return;
+    }
+    let name = "backend::gpu::faults::memory::memory_that_the_system_refuses_the_driver_is_done_without";
+    let mut child = Command::new(std::env::current_exe().unwrap());
+    let child = child.args([name, "--exact", "--nocapture"]).env(CHILD, "1").output().unwrap();
+    let said = String::from_utf8_lossy(&[child.stdout, child.stderr].concat()).into_owned();
+    assert!(child.status.success() && said.contains("1 passed"), "{said}");
+}
+
+#[cfg(target_os = "linux")]
+fn bake_in_little_memory() {
+    let mut device = lavapipe().expect("as the parent has it");
+    device.pace.longest = Duration::MAX;
+    let heights: HeightMap = Grid::from_fn(4096, 2048, |x, y| (x * x / 7 + 29 * y) as u8).unwrap().into();
+    let plan = BakePlan::new(&BakeOptions::default(), heights.size(), heights.height_type()).unwrap();
+    let expected = Baker::cpu().normal(&heights, &NormalOptions::default()).unwrap();
+    let bake = |device: &Device, map: &mut NormalMap, rows| {
+        let mut bands = MapBands::new(&heights, plan.edges.y, rows);
+        device_bake::run(device, &plan, &mut bands, &mut [&mut MapSink::new(map.codes_mut(), 3 * 4096)]).unwrap();
+        assert!(*map == expected, "bands of {rows} rows");
+    };
+    let mut map = NormalMap::zeroed(plan.size, NormalFormat::default());
+    // The driver compiles and starts its threads.
+    bake(&device, &mut map, 64);
+    assert!(device.free_slots());
+    map.codes_mut().bytes_mut().fill(0xa5);
+
+    // wgpu has taken one block of 64 MiB, and the next one is larger than what the process may have: there is room for
+    // two slots of 682 rows, 21 MiB each, and not for three.
+    let before = device.pace.submitted("bake").len();
+    let pages = std::fs::read_to_string("/proc/self/statm").unwrap();
+    let pages: u64 = pages.split(' ').next().unwrap().parse().unwrap();
+    let limit = pages * 4096 + (48 << 20);
+    let arguments = ["--pid", &std::process::id().to_string(), &format!("--as={limit}:")].map(String::from);
+    if !Command::new("prlimit").args(arguments).status().is_ok_and(|status| status.success()) {
+        return println!("not tested: no prlimit");
+    }
+    bake(&device, &mut map, 682);
+    let rows: Vec<usize> = device.pace.submitted("bake")[before..].iter().map(|texels| texels / 4096).collect();
+    assert_eq!(rows, [682, 682, 341, 341, 2]);
 }

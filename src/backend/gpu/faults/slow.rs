@@ -16,14 +16,15 @@ use crate::stream::{MapBands, MapSink};
 use std::borrow::Cow;
 use std::time::Duration;
 
-/// Two million steps for each invocation that has something to compute, in tens of milliseconds for a workgroup.
-/// llvmpipe leaves a loop after 65535 turns.
+/// Two million steps, of which no compiler makes fewer, for each invocation that has something to compute: tens of
+/// milliseconds for a workgroup. llvmpipe leaves a loop after 65535 turns.
 const LOOP: &str = "
     var spin = params.nonce + id.x;
     for (var turn = 0u; turn < 65000u; turn++) {
         SPIN
     }
-    if (spin == 0x12345678u && params.nonce == 0u) {
+    // The square of no number; a driver that compiles for the values of params cannot leave the loop out either.
+    if (spin * spin == 5u) {
         return;
     }
 ";
@@ -33,7 +34,7 @@ fn slow(source: KernelSource, line: &str) -> Option<Device> {
     let device = lavapipe()?;
     let text = source.text();
     assert!(text.contains(line), "{}: no {line:?}", source.name);
-    let steps = "spin = spin * 1664525u + 1013904223u;\n".repeat(32);
+    let steps = "spin = spin * spin + 1013904223u;\n".repeat(32);
     device.substitute(source, &text.replacen(line, &[&LOOP.replace("SPIN", &steps), line].concat(), 1));
     Some(device)
 }
@@ -55,6 +56,7 @@ fn bake(device: &Device, rows: usize) {
     device_bake::run(device, &plan, &mut bands, &mut [&mut MapSink::new(map.codes_mut(), 3 * WIDTH)]).unwrap();
     assert!(map == Baker::reference().normal(&heights, &NormalOptions::default()).unwrap(), "{rows} rows");
 }
+
 /// Rows of the dispatches in which a device bakes so many rows, in their order.
 fn rows_of_dispatches(device: Device, rows: usize) -> Vec<usize> {
     bake(&device, rows);
@@ -66,25 +68,37 @@ fn rows_submitted(device: &Device) -> Vec<usize> {
 }
 
 #[test]
-fn dispatches_that_take_long_are_halved_down_to_a_row() {
+fn slow_dispatches_are_halved_down_to_a_row() {
     let Some(mut device) = slow_bakes() else { return };
     device.pace.longest = Duration::from_millis(1);
-    // Three are in flight, and the first is not judged: when the fifth is sent, the second has been seen to be slow.
-    let expected = [4, 4, 4, 4, 2, 2, 2, 1, 1, 1, 1, 1, 1];
-    assert_eq!(rows_of_dispatches(device, 28), expected);
+    let rows = rows_of_dispatches(device, 28);
+    assert!(rows.starts_with(&[4; 4]) && rows.is_sorted_by(|a, b| a >= b) && rows.ends_with(&[1]), "{rows:?}");
 }
 
 #[test]
-fn dispatches_that_take_no_longer_than_they_may_stay_as_they_are() {
+fn slow_dispatches_stay_as_they_are_where_they_may_take_long() {
     let Some(mut device) = slow_bakes() else { return };
     device.pace.longest = Duration::MAX;
     assert_eq!(rows_of_dispatches(device, 28), [4; 7]);
 }
 
+/// Lavapipe, on which every dispatch takes longer than it may.
+fn impatient() -> Option<Device> {
+    let mut device = lavapipe()?;
+    device.pace.longest = Duration::ZERO;
+    Some(device)
+}
+
+#[test]
+fn each_dispatch_that_took_too_long_halves_those_after_it() {
+    let Some(device) = impatient() else { return };
+    // Three are in flight, and the first is not judged: when the fifth is sent, the second has been seen to be slow.
+    assert_eq!(rows_of_dispatches(device, 28), [4, 4, 4, 4, 2, 2, 2, 1, 1, 1, 1, 1, 1]);
+}
+
 #[test]
 fn dispatches_grow_again_once_they_are_short() {
-    let Some(mut device) = slow_bakes() else { return };
-    device.pace.longest = Duration::from_millis(1);
+    let Some(mut device) = impatient() else { return };
     bake(&device, 28);
     let before = rows_submitted(&device).len();
     device.pace.longest = Duration::MAX;
@@ -95,9 +109,8 @@ fn dispatches_grow_again_once_they_are_short() {
 }
 
 #[test]
-fn tangents_that_take_long_are_halved_down_to_a_workgroup() {
-    let Some(mut device) = slow(FRAMES_LENGYEL, "let p0 = position(") else { return };
-    device.pace.longest = Duration::from_millis(1);
+fn dispatches_of_tangents_are_halved_down_to_a_workgroup() {
+    let Some(device) = impatient() else { return };
     let (mesh, normals) = noise(700, 9).unwrap();
     let surface = Surface::new(&mesh, &normals, false);
     let fans = Fans { corners: Cow::Owned(CornerAdjacency::of(&mesh)), owners: None };
@@ -122,13 +135,13 @@ fn a_device_that_does_not_answer_is_given_up() {
     });
     for falls_back in [true, false] {
         let Some(mut device) = slow_bakes() else { return };
-        device.patience = Duration::from_millis(1);
+        device.patience = Duration::ZERO;
         let (gpu, relieved, alone) = bakers(device);
         if falls_back {
             assert!((job.run)(&relieved).unwrap() == job.expected());
         } else {
             let error = (job.run)(&alone).unwrap_err().to_string();
-            assert!(error.ends_with(": it has not answered for 1ms"), "{error}");
+            assert!(error.ends_with(": it has not answered for 0ns"), "{error}");
         }
         let tried = gpu.device.pace.submitted("bake").len();
         (job.run)(&relieved).unwrap();
@@ -139,11 +152,11 @@ fn a_device_that_does_not_answer_is_given_up() {
 #[test]
 fn tangents_that_do_not_come_back_are_given_up() {
     let Some(mut device) = slow(FRAMES_LENGYEL, "let p0 = position(") else { return };
-    device.patience = Duration::from_millis(1);
+    device.patience = Duration::ZERO;
     let (_gpu, relieved, alone) = bakers(device);
     let options = TangentOptions { method: TangentMethod::Lengyel, ..Default::default() };
     let expected = Baker::reference().tangents(&mesh(), &options).unwrap();
     let error = alone.tangents(&mesh(), &options).map(drop).unwrap_err().to_string();
-    assert!(error.ends_with(": it has not answered for 1ms"), "{error}");
+    assert!(error.ends_with(": it has not answered for 0ns"), "{error}");
     assert!(relieved.tangents(&mesh(), &options).unwrap().tangents == expected.tangents);
 }
