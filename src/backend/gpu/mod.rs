@@ -76,9 +76,9 @@ impl Untested {
         Self::open_adapter(&adapters::select(selector)?)
     }
 
-    /// Every adapter of this machine, the best first, or why it does not open.
-    pub fn all() -> Vec<Result<Self>> {
-        adapters::all().iter().map(Self::open_adapter).collect()
+    /// Every adapter that `selector` means, or every one, the best first, or why it does not open.
+    pub fn all(selector: Option<&str>) -> Vec<Result<Self>> {
+        adapters::meant(selector).iter().map(Self::open_adapter).collect()
     }
 
     /// Compiles a kernel of somebody else's.
