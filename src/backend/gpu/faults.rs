@@ -2,6 +2,7 @@
 
 use super::device::Device;
 use super::kernel::BAKE_INTEGERS;
+use super::operation::Doubt;
 use super::{Untested, adapters, bake as device_bake};
 use crate::backend::Backend;
 use crate::error::Result;
@@ -49,7 +50,7 @@ fn bake(device: &Device, before: impl FnMut(usize)) -> Result<(NormalMap, Parall
     let mut parallax = ParallaxMap::zeroed(plan.size, ParallaxFormat::default());
     let normal_sink = &mut MapSink::new(normal.codes_mut(), 3 * plan.size.width());
     let parallax_sink = &mut MapSink::new(parallax.codes_mut(), plan.size.width());
-    device_bake::run(device, &plan, &mut bands, &mut [normal_sink, parallax_sink])?;
+    device_bake::run(device, &plan, Doubt::Near, &mut bands, &mut [normal_sink, parallax_sink])?;
     Ok((normal, parallax))
 }
 

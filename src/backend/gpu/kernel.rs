@@ -68,17 +68,30 @@ const NATIVE_FLOAT: &str = include_str!("../../../kernels/shared/native_float.wg
 const ACOS: &str = include_str!("../../../kernels/shared/acos.wgsl");
 const UNIT: &str = include_str!("../../../kernels/shared/unit.wgsl");
 const FLOAT_PARALLAX: &str = include_str!("../../../kernels/shared/float_parallax.wgsl");
+const ESTIMATE: &str = include_str!("../../../kernels/shared/estimate.wgsl");
 const FAST_CODE: &str = include_str!("../../../kernels/shared/fast_code.wgsl");
 
 pub(crate) const BAKE_INTEGERS: KernelSource = KernelSource {
     name: "bake, integer heights to integer codes",
     entry_point: "bake",
-    files: &[BAKE, INTEGER_HEIGHTS, INTEGERS, HEIGHTS, CODES, NEAREST_CODE, WIDE],
+    files: &[BAKE, INTEGER_HEIGHTS, INTEGERS, HEIGHTS, CODES, ESTIMATE, NEAREST_CODE, WIDE],
 };
 pub(crate) const BAKE_FLOATS: KernelSource = KernelSource {
     name: "bake, integer heights to floats",
     entry_point: "bake",
-    files: &[BAKE, INTEGER_HEIGHTS, FLOATS, HEIGHTS, CODES, NEAREST_CODE, NEAREST_FLOAT, WIDE, SOFT_FLOAT, FLUSHING],
+    files: &[
+        BAKE,
+        INTEGER_HEIGHTS,
+        FLOATS,
+        HEIGHTS,
+        CODES,
+        ESTIMATE,
+        NEAREST_CODE,
+        NEAREST_FLOAT,
+        WIDE,
+        SOFT_FLOAT,
+        FLUSHING,
+    ],
 };
 pub(crate) const BAKE_FLOAT_HEIGHTS: KernelSource = KernelSource {
     name: "bake, float heights",
@@ -98,6 +111,7 @@ pub(crate) const BLEND_INTEGERS: KernelSource = KernelSource {
         BLENDED_INTEGERS,
         READ_CODES,
         CODES,
+        ESTIMATE,
         NEAREST_CODE,
         NEAREST_FLOAT,
         SIGNED,
@@ -119,7 +133,18 @@ pub(crate) const BLEND_FAST: KernelSource = KernelSource {
 pub(crate) const PARALLAX_INTEGERS: KernelSource = KernelSource {
     name: "parallax, integer maps",
     entry_point: "parallax",
-    files: &[PARALLAX, INTEGER_MAPS, READ_CODES, CODES, NEAREST_CODE, NEAREST_FLOAT, WIDE, SOFT_FLOAT, FLUSHING],
+    files: &[
+        PARALLAX,
+        INTEGER_MAPS,
+        READ_CODES,
+        CODES,
+        ESTIMATE,
+        NEAREST_CODE,
+        NEAREST_FLOAT,
+        WIDE,
+        SOFT_FLOAT,
+        FLUSHING,
+    ],
 };
 pub(crate) const PARALLAX_FLOATS: KernelSource = KernelSource {
     name: "parallax, float maps",

@@ -41,7 +41,7 @@ use crate::stream::{CodeSink, HeightBands, LayerBands};
 use device::Device;
 pub use hosted::{CodeTarget, HeightSource, Hosted, NormalBake};
 use layers::LayerOperation;
-use operation::{Operation, TEXELS_PER_INVOCATION, WORKGROUP, output_row_bytes};
+use operation::{Doubt, Operation, TEXELS_PER_INVOCATION, WORKGROUP, output_row_bytes};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use tangents::Limits;
 pub use variants::{KernelVariant, kernels};
@@ -101,7 +101,7 @@ impl Untested {
         sink: &mut dyn CodeSink,
     ) -> Result<()> {
         self.check_width(plan)?;
-        layers::run(&self.device, plan, bands, &mut [sink])
+        layers::run(&self.device, plan, Doubt::Near, bands, &mut [sink])
     }
 }
 
@@ -120,7 +120,7 @@ impl Backend for Untested {
 
     fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
         self.check_width(plan)?;
-        bake::run(&self.device, plan, bands, sinks)
+        bake::run(&self.device, plan, Doubt::Near, bands, sinks)
     }
 
     fn blend(&self, plan: &BlendPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {

@@ -1,7 +1,7 @@
 //! Bands up, codes down: a ring of slots keeps the next band uploading while one computes and one reads back.
 
 use super::device::Device;
-use super::operation::{Layer, Operation, Places, Rows, TEXELS_PER_INVOCATION, WORKGROUP, output_row_bytes};
+use super::operation::{Doubt, Layer, Operation, Places, Rows, TEXELS_PER_INVOCATION, WORKGROUP, output_row_bytes};
 use super::slot::Slot;
 use crate::backend::fill_rows;
 use crate::error::Result;
@@ -36,6 +36,7 @@ pub(super) struct Mapping {
 pub(super) struct Transfer<'a, O> {
     device: &'a Device,
     operation: &'a O,
+    doubt: Doubt,
     entry_point: &'static str,
     pipeline: ComputePipeline,
     input_row_bytes: Vec<usize>,
@@ -45,12 +46,13 @@ pub(super) struct Transfer<'a, O> {
 
 impl<'a, O: Operation> Transfer<'a, O> {
     /// Prepares the kernel.
-    pub fn new(device: &'a Device, operation: &'a O) -> Result<Self> {
+    pub fn new(device: &'a Device, operation: &'a O, doubt: Doubt) -> Result<Self> {
         let kernel = operation.kernel();
         let pipeline = device.guarded(|| Ok(device.pipeline(&kernel)))?;
         Ok(Self {
             device,
             operation,
+            doubt,
             entry_point: kernel.source.entry_point,
             pipeline,
             input_row_bytes: operation.inputs(),
@@ -82,7 +84,8 @@ impl<'a, O: Operation> Transfer<'a, O> {
         let device = self.device;
         let (inputs, input_words) = stacked(layers.iter().map(|layer| layer.rows).zip(&self.input_row_bytes));
         let (outputs, marks) = stacked(self.output_row_bytes.iter().map(|row_bytes| (rows, row_bytes)));
-        let places = Places { rows: rows as u32, inputs, outputs, marks, nonce: device.fresh_nonce() };
+        let places =
+            Places { rows: rows as u32, inputs, outputs, marks, nonce: device.fresh_nonce(), doubt: self.doubt };
         let input_bytes = 4 * u64::from(input_words);
         let output_bytes = 4 * (u64::from(marks) + rows as u64);
         let slot = device.slot(input_bytes, output_bytes);
