@@ -42,10 +42,15 @@ fn doubtful(kernel: &KernelVariant) -> f64 {
 }
 
 /// A kernel whose estimates are never in doubt, if it is one that estimates.
-fn without_doubt(kernel: &KernelVariant) -> Option<KernelVariant> {
-    const DOUBT: &str = "return distance < error * bitcast<f32>(params.doubt);";
-    let wgsl = kernel.wgsl.contains(DOUBT).then(|| kernel.wgsl.replace(DOUBT, "return vec4(false);"))?;
-    Some(KernelVariant { wgsl, ..kernel.clone() })
+fn without_doubt(kernel: &KernelVariant) -> Result<Option<KernelVariant>, String> {
+    const DOUBT: &str = "if (any(doubtful)) {";
+    if !kernel.constants.contains(&("ESTIMATED", 1.0)) {
+        return Ok(None);
+    }
+    if kernel.wgsl.matches(DOUBT).count() != 1 {
+        return Err(format!("the text has not one {DOUBT:?}"));
+    }
+    Ok(Some(KernelVariant { wgsl: kernel.wgsl.replace(DOUBT, "if (false) {"), ..kernel.clone() }))
 }
 
 impl Cost {
@@ -59,7 +64,7 @@ impl Cost {
         let shipped = radv.compile(&words, kernel.entry_point, listing)?;
         let unrolled = radv.compile(&spirv::unrolled(&words), kernel.entry_point, false)?;
         let mut cost = Self::read(&shipped, &unrolled)?;
-        if let Some(sure) = without_doubt(kernel) {
+        if let Some(sure) = without_doubt(kernel)? {
             let sure = radv.compile(&spirv::unrolled(&spirv::of(&sure)?), kernel.entry_point, false)?;
             let sure = Self::read(&shipped, &sure)?;
             let doubtful = doubtful(kernel);

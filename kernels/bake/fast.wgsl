@@ -1,71 +1,18 @@
-// Any heights in native f32: a code may be its neighbour. The steps are those of float_heights.wgsl.
+// Any heights in native f32: a code may be its neighbour.
 
 fn bake_four(north: Heights, middle: Heights, south: Heights) -> Four {
-    let slope = slopes(north, middle, south);
-    // Slopes of integer heights are below 2^44.
-    let steep = (max(abs(slope.x), abs(slope.y)) >= vec4(0x1p-4f)) & vec4(HEIGHT_BITS == 32u);
-    let factor = select(vec4(0x1p64f), vec4(0x1p-30f), steep);
-    let x = slope.x * factor;
-    let y = slope.y * factor;
-    let z = select(vec4(1.0), vec4(0x1p-94f), steep);
-    let scale = inverseSqrt(x * x + y * y + z * z);
+    let normal = native_normals(north, middle, south);
     var four: Four;
     if (NORMAL_CODES > 0u) {
         four.normals = Texels(
-            fast_codes(params.normal, NORMAL_IS_FLOAT, NORMAL_BITS, x * scale),
-            fast_codes(params.normal, NORMAL_IS_FLOAT, NORMAL_BITS, y * scale),
-            fast_codes(params.normal, NORMAL_IS_FLOAT, NORMAL_BITS, z * scale),
+            fast_codes(params.normal, NORMAL_IS_FLOAT, NORMAL_BITS, normal.x),
+            fast_codes(params.normal, NORMAL_IS_FLOAT, NORMAL_BITS, normal.y),
+            fast_codes(params.normal, NORMAL_IS_FLOAT, NORMAL_BITS, normal.z),
         );
     }
     if (PARALLAX_BITS > 0u) {
-        let parallax = z * scale * height_above_middle(middle.here);
+        let parallax = normal.z * height_above_middle(middle.here);
         four.parallaxes = fast_codes(params.parallax, PARALLAX_IS_FLOAT, PARALLAX_BITS, parallax);
     }
     return four;
-}
-
-// 2h - 1.
-fn height_above_middle(heights: vec4<u32>) -> vec4<f32> {
-    if (HEIGHT_BITS < 32u) {
-        return vec4<f32>(twice_above_middle(heights)) * select(1.0 / 255.0, 1.0 / 65535.0, HEIGHT_BITS == 16u);
-    }
-    return 2.0 * clamp(bitcast<vec4<f32>>(heights), vec4(0.0), vec4(1.0)) - 1.0;
-}
-
-struct Slopes {
-    x: vec4<f32>,
-    y: vec4<f32>,
-}
-
-// Over 2^64: kx Gx / 64 and ky Gy / 64.
-fn slopes(north: Heights, middle: Heights, south: Heights) -> Slopes {
-    let kx = bitcast<f32>(params.kx);
-    let ky = bitcast<f32>(params.ky);
-    if (HEIGHT_BITS < 32u) {
-        let g = integer_sums(north, middle, south);
-        return Slopes(vec4<f32>(g.x) * (kx * 0x1p-6f), vec4<f32>(g.y) * (ky * 0x1p-6f));
-    }
-    let n = over_64(north);
-    let m = over_64(middle);
-    let s = over_64(south);
-    let centre = f32(CENTRE);
-    let outer = f32(OUTER);
-    return Slopes(
-        kx * (outer * ((n.east - n.west) + (s.east - s.west)) + centre * (m.east - m.west)),
-        ky * (outer * ((s.west - n.west) + (s.east - n.east)) + centre * (s.here - n.here)),
-    );
-}
-
-struct FloatHeights {
-    west: vec4<f32>,
-    here: vec4<f32>,
-    east: vec4<f32>,
-}
-
-fn over_64(heights: Heights) -> FloatHeights {
-    return FloatHeights(
-        bitcast<vec4<f32>>(heights.west) * 0x1p-6f,
-        bitcast<vec4<f32>>(heights.here) * 0x1p-6f,
-        bitcast<vec4<f32>>(heights.east) * 0x1p-6f,
-    );
 }

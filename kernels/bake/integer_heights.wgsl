@@ -1,10 +1,10 @@
 // Integer heights, correctly rounded: A / sqrt(S) with S = X^2 + Y^2 + Z^2 (DESIGN 3.1).
 //
 // A is X, Y, Z of the normal and Z (2H - M) / M of the parallax map. A float estimate gives most codes; where it is too
-// near to a boundary, integers do. Their codes (fn normal_code, fn parallax_code) are those of integers.wgsl or of
-// floats.wgsl.
+// near to a boundary, integers do. Codes of either kind (fn estimated_normal, fn normal_code and so on) are those of
+// integers.wgsl or of floats.wgsl.
 
-// Whether estimates are near enough: all codes are integers, and have 8 bits or S is below 2^49.
+// Whether estimates are near enough: all codes have 8 bits, or S is below 2^49.
 override ESTIMATED: bool = false;
 // Whether all codes are integers, and m A, m^2 S and t^2 S always fit 32, 64 and 64 bits.
 override NARROW: bool = false;
@@ -51,21 +51,21 @@ fn estimated(g: Sums, height: vec4<i32>) -> Estimate {
     let root = root_of(vec4<u32>(whole_x * whole_x + whole_y * whole_y + whole_z * whole_z), s, scale);
     var result: Estimate;
     if (NORMAL_CODES > 0u) {
-        let codes_x = nearest_codes(params.normal, NORMAL_BITS, x * scale, whole_x, root);
-        let codes_y = nearest_codes(params.normal, NORMAL_BITS, y * scale, whole_y, root);
+        let codes_x = estimated_normal(Component(x * scale, whole_x, scale, root));
+        let codes_y = estimated_normal(Component(y * scale, whole_y, scale, root));
         result.four.normals.x = codes_x.codes;
         result.four.normals.y = codes_y.codes;
         result.doubtful = codes_x.doubtful | codes_y.doubtful;
         // Of two codes, z is none.
         if (NORMAL_CODES > 2u) {
-            let codes_z = nearest_codes(params.normal, NORMAL_BITS, z * scale, whole_z, root);
+            let codes_z = estimated_normal(Component(z * scale, whole_z, scale, root));
             result.four.normals.z = codes_z.codes;
             result.doubtful = result.doubtful | codes_z.doubtful;
         }
     }
     if (PARALLAX_BITS > 0u) {
         let component = f32(params.z_over_m) * vec4<f32>(height) * scale;
-        let codes = nearest_codes(params.parallax, PARALLAX_BITS, component, i32(params.z_over_m) * height, root);
+        let codes = estimated_parallax(Component(component, i32(params.z_over_m) * height, scale, root));
         result.four.parallaxes = codes.codes;
         result.doubtful = result.doubtful | codes.doubtful;
     }

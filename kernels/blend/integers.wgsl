@@ -3,8 +3,7 @@
 // Normals stand over L1 and L2, and what they become over what makes it an integer: the sum of both is multiplied by
 // L1 L2, or q L1 L2, and so on.
 
-// Whether estimates are near enough: codes are integers, |A| and what it is made of are below 2^31, and codes have 8 bits
-// or S is below 2^49.
+// Whether estimates are near enough: |A| is below 2^31, and codes have 8 bits or S is below 2^49.
 override ESTIMATED: bool = false;
 // What S always fits. 64: codes are integers, and m A, m^2 S and t^2 S fit 32, 64 and 64 bits; 96: |A| < 2^48;
 // 128: |A| < 2^53.
@@ -83,16 +82,20 @@ fn estimated(a: Integers) -> Estimate {
     let s = x * x + y * y + z * z;
     let scale = inverseSqrt(s);
     let root = root_of(vec4<u32>(a.x * a.x + a.y * a.y + whole_z * whole_z), s, scale);
-    let codes_x = nearest_codes(params.normal, NORMAL_BITS, x * scale, a.x, root);
-    let codes_y = nearest_codes(params.normal, NORMAL_BITS, y * scale, a.y, root);
+    let codes_x = estimated_normal(Component(x * scale, a.x, scale, root));
+    let codes_y = estimated_normal(Component(y * scale, a.y, scale, root));
     var result = Estimate(Texels(codes_x.codes, codes_y.codes, vec4(0u)), codes_x.doubtful | codes_y.doubtful);
     // Of two codes, z is none.
     if (NORMAL_CODES > 2u) {
-        let codes_z = nearest_codes(params.normal, NORMAL_BITS, z * scale, whole_z, root);
+        let codes_z = estimated_normal(Component(z * scale, whole_z, scale, root));
         result.codes.z = codes_z.codes;
         result.doubtful = result.doubtful | codes_z.doubtful;
     }
     return result;
+}
+
+fn estimated_normal(component: Component) -> Codes {
+    return nearest_codes(params.normal, NORMAL_IS_FLOAT, NORMAL_BITS, component);
 }
 
 fn exact_codes(v1: vec3<i32>, v2: vec3<i32>, weights: vec3<i32>) -> vec3<u32> {

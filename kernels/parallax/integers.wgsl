@@ -1,6 +1,6 @@
 // Integer maps, correctly rounded: A / sqrt(S) with A = z (2H - M) and S = M^2 (x^2 + y^2 + z^2) (DESIGN 3.1).
 
-// Whether estimates are near enough: the code is an integer, and has 8 bits or S is below 2^49.
+// Whether estimates are near enough: the code has 8 bits, or S is below 2^49.
 override ESTIMATED: bool = false;
 // Whether the code is an integer, and m A, m^2 S and t^2 S always fit 32, 64 and 64 bits.
 override NARROW: bool = false;
@@ -34,7 +34,8 @@ fn estimated(v: Integers, h: vec4<i32>) -> Codes {
     let s = (x * x + y * y + z * z) * (f32(m) * f32(m));
     let scale = inverseSqrt(s);
     let root = root_of(vec4<u32>((v.x * v.x + v.y * v.y + v.z * v.z) * (m * m)), s, scale);
-    return nearest_codes(params.parallax, PARALLAX_BITS, z * vec4<f32>(h) * scale, v.z * h, root);
+    let component = Component(z * vec4<f32>(h) * scale, v.z * h, scale, root);
+    return nearest_codes(params.parallax, PARALLAX_IS_FLOAT, PARALLAX_BITS, component);
 }
 
 fn exact_code(h: i32, normal: vec3<u32>) -> u32 {

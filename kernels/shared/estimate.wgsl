@@ -10,12 +10,19 @@ struct Codes {
     doubtful: vec4<bool>,
 }
 
-// `component` is A times the inverse root of S, off by at most 9 units; `a` is A modulo 2^32.
-fn nearest_codes(output: Output, bits: u32, component: vec4<f32>, a: vec4<i32>, root: Root) -> Codes {
+// What is known of four numbers A / sqrt(S).
+struct Component {
+    estimate: vec4<f32>,  // A times `scale`, off by at most 9 units
+    a: vec4<i32>,         // A modulo 2^32
+    scale: vec4<f32>,     // nearly the inverse root of S
+    root: Root,
+}
+
+fn integer_codes(output: Output, bits: u32, component: Component) -> Codes {
     if (bits == 8u) {
-        return byte_codes(output, component);
+        return byte_codes(output, component.estimate);
     }
-    return short_codes(output, component, a, root);
+    return short_codes(output, component.estimate, component.a, component.root);
 }
 
 // Of 8 bits: the component as a code is off by 9 2^-23 127.5, and by two roundings below 512, all in all 2.0e-4.

@@ -113,8 +113,10 @@ pub(super) fn kernel(plan: &BakePlan, normal_codes: usize, marked: bool) -> Kern
         ("OUTER", plan.stencil.outer as u32),
         ("MARKED", marked.into()),
     ];
-    if [BAKE_INTEGERS, BAKE_FLOATS].contains(&source) {
+    if source != BAKE_FAST {
         constants.push(("ESTIMATED", can_be_estimated(plan).into()));
+    }
+    if [BAKE_INTEGERS, BAKE_FLOATS].contains(&source) {
         constants.push(("NARROW", fits_64_bits(plan).into()));
     }
     Kernel { source, constants }
@@ -170,14 +172,14 @@ fn code_of_one(format: TexelFormat) -> u32 {
     }
 }
 
-/// Whether kernels/shared/estimate.wgsl does for all codes: integers of 8 bits, or any integers of a short S.
+/// Whether kernels/shared/estimate.wgsl does for all codes: of 8 bits, or of a short S. Differences of float heights that
+/// a stencil adds up can cancel.
 fn can_be_estimated(plan: &BakePlan) -> bool {
-    let is_short = greatest_s(plan).is_some_and(|s| s < 1 << 49);
-    plan.outputs().all(|format| match format.depth {
-        Depth::Bits8 => true,
-        Depth::Bits16 => is_short,
-        Depth::Float16 | Depth::Float32 => false,
-    })
+    let has_bytes = plan.outputs().all(|format| format.depth == Depth::Bits8);
+    match plan.slope {
+        Slope::Integer(_) => has_bytes || greatest_s(plan).is_some_and(|s| s < 1 << 49),
+        Slope::Float(_) => has_bytes && plan.stencil.outer == 0,
+    }
 }
 
 /// The greatest S = X^2 + Y^2 + Z^2; floats have none.

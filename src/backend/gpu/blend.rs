@@ -129,12 +129,7 @@ fn can_be_estimated(plan: &BlendPlan) -> bool {
     let Some(scales) = plan.integer_scales() else { return false };
     let [leaning, z] = plan.greatest_parts(scales);
     let is_short = 2 * leaning.pow(2) + z.pow(2) < 1 << 49;
-    leaning.max(z) < 1 << 31
-        && match plan.format.depth {
-            Depth::Bits8 => true,
-            Depth::Bits16 => is_short,
-            Depth::Float16 | Depth::Float32 => false,
-        }
+    leaning.max(z) < 1 << 31 && (plan.format.depth == Depth::Bits8 || is_short)
 }
 
 /// `S_BITS` of kernels/blend/integers.wgsl: the fewest that are enough for every texel.

@@ -156,7 +156,7 @@ fn a_blend_that_computes_wrong_bytes_is_refused_before_its_first_job() {
         (add([UNORM8, UNORM8, UNORM16]), "(u == vec4(1))", "(u == vec4(3))"),
         (add([SNORM8; 3]), "vec4(-input.greatest)", "vec4(-input.greatest - 1)"),
         (add([UNORM16; 3]), "a.z, a.w >> 16u", "a.w, a.w >> 16u"),
-        (add([xy(UNORM16); 3]), "- xx", ""),
+        (add([xy(UNORM16); 3]), "- xx;", "- 0u * xx;"),
         (add([xy(UNORM8), UNORM8, xy(UNORM16)]), "words >> vec4(8u)", "words >> vec4(16u)"),
         (add([dx, FLOAT32, UNORM8]), "let turned = y ^ select(0u, SIGN, input.green < 0)", "let turned = y"),
         (add([FLOAT16; 3]), "at_least(LEAST_Z, codes.z)", "codes.z"),

@@ -102,13 +102,9 @@ impl LayerOperation for ParallaxPlan {
     }
 }
 
-/// Whether kernels/shared/estimate.wgsl does: for an integer of 8 bits, or any integer of a short S.
+/// Whether kernels/shared/estimate.wgsl does: for a code of 8 bits, or any of a short S.
 fn can_be_estimated(plan: &ParallaxPlan) -> bool {
-    match plan.format.depth {
-        Depth::Bits8 => true,
-        Depth::Bits16 => greatest_s(plan).is_some_and(|s| s < 1 << 49),
-        Depth::Float16 | Depth::Float32 => false,
-    }
+    plan.format.depth == Depth::Bits8 || greatest_s(plan).is_some_and(|s| s < 1 << 49)
 }
 
 /// The greatest S = M^2 (x^2 + y^2 + z^2); floats have none.
