@@ -26,8 +26,9 @@ fn float_codes(bits: u32, component: Component) -> Codes {
     let corrected = n + vec4<u32>(vec4<i32>(nearest));
     let distance = 0.5 - abs(missing - nearest);
     let error = (abs(left) + abs(rest)) * component.scale * FLOAT_ERROR + LEAST_ERROR;
-    // Beyond a power of two the last place is another.
-    let leaves = (corrected < vec4(0x800000u)) | (corrected > vec4(0x1000000u));
+    // Beyond a power of two the last place is another: below it, half of one.
+    let below = (corrected == vec4(0x800000u)) & (missing - nearest < vec4(-0.125));
+    let leaves = below | (corrected < vec4(0x800000u)) | (corrected > vec4(0x1000000u));
     let magnitude = estimate + vec4<u32>(vec4<i32>(nearest));
     let sign = bitcast<vec4<u32>>(component.estimate) & vec4(SIGN);
     let is_zero = component.estimate == vec4(0.0);
