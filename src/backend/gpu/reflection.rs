@@ -274,7 +274,7 @@ fn a_kernel_that_computes_wrong_bytes_is_refused_before_its_first_job() {
     for (plan, from, to) in [
         (exact(HeightType::U8, UNORM8, None), "(output.code_offset - 128)", "(output.code_offset - 127)"),
         (exact(HeightType::U16, SNORM16, None), "let rest = vec4<f32>(t) * root.rest", "let rest = vec4<f32>(t) * 0.0"),
-        (exact(HeightType::U16, SNORM16, None), "whole_x, root)", "whole_y, root)"),
+        (exact(HeightType::U16, SNORM16, None), "whole_x, scale, root)", "whole_y, scale, root)"),
         (exact(HeightType::U8, UNORM8, UNORM8), "let a = params.z_over_m * ", "let a = 1u + params.z_over_m * "),
         (exact(HeightType::U16, None, SNORM16), "product(params.z_over_m, ", "product(params.z_over_m + 1u, "),
         (
