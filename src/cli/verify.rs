@@ -5,7 +5,7 @@ use super::interruptible;
 use super::print::{comparison_table, put, say};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use texbake::batch::JsonFile;
 use texbake::stream::Monitor;
 #[cfg(feature = "gpu")]
@@ -148,7 +148,7 @@ impl VerifyArguments {
 }
 
 #[cfg(feature = "gpu")]
-fn write_page(path: &Path, arguments: &VerifyArguments, monitor: &Monitor) -> Result<Exit, Failure> {
+fn write_page(path: &std::path::Path, arguments: &VerifyArguments, monitor: &Monitor) -> Result<Exit, Failure> {
     let bar = bar(arguments.quiet);
     let watch = &mut |progress: Progress<'_>| advance(&bar, "page", progress);
     let page = match Page::new(&arguments.options(), arguments.sabotage, monitor, watch) {
