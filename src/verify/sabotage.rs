@@ -11,7 +11,11 @@ use crate::stream::{CodeSink, HeightBands, LayerBands};
 
 /// Constants of the kernels' text, and what stands there instead.
 #[cfg(feature = "gpu")]
-const CHANGES: [(&str, &str); 5] = [
+const CHANGES: [(&str, &str); 7] = [
+    // Estimated codes of 8 bits are one higher.
+    ("* 0.5 + 128.0)", "* 0.5 + 129.0)"),
+    // Estimated floats are a place higher.
+    ("floor(missing + 0.5)", "floor(missing + 1.5)"),
     // The middle between two codes lies one code higher.
     ("2 * below + 1 -", "2 * below + 3 -"),
     // The search for a float's bits begins too late.
@@ -20,8 +24,8 @@ const CHANGES: [(&str, &str); 5] = [
     ("SMALLEST_COMPONENT: u32 = 0x0d800000u", "SMALLEST_COMPONENT: u32 = 0x3d800000u"),
     // Native codes are two higher.
     (
-        "(f32(output.code_c) + 1.0) * 0.5;\n    return stored_code(output, i32(",
-        "(f32(output.code_c) + 5.0) * 0.5;\n    return stored_code(output, i32(",
+        "(f32(output.code_c) + 1.0) * 0.5;\n    return vec4<u32>(vec4<i32>(floor(",
+        "(f32(output.code_c) + 5.0) * 0.5;\n    return vec4<u32>(vec4<i32>(floor(",
     ),
     // Products of vectors are one greater.
     ("MINUS_ZERO: u32 = SIGN", "MINUS_ZERO: u32 = 0x3f800000u"),

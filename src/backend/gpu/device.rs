@@ -172,6 +172,11 @@ impl Device {
         // That a device is lost is the cause of whatever else is wrong, and is told at a poll only.
         let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(Duration::from_secs(1)) };
         let _ = catch_unwind(AssertUnwindSafe(|| self.device.poll(wait)));
+        // Another thread's poll may have taken the news, and be about to tell it.
+        for _ in 0..if is_out_of_memory { 0 } else { 20 } {
+            self.check()?;
+            std::thread::sleep(Duration::from_millis(5));
+        }
         self.check()?;
         Err(if is_out_of_memory { Fault::OutOfMemory(failure) } else { Fault::Other(failure) })
     }

@@ -28,10 +28,13 @@ pub(super) fn cases(extent: Extent) -> Vec<Case> {
     let mut cases = Vec::new();
     let mut draw = Chance::named(0, "bakes");
     for precision in PRECISIONS {
+        let mut decks = ["normal map", "parallax map", "both in one pass"].map(|name| (name, Deck::new(name)));
         for height_type in HEIGHT_TYPES {
             for outputs in every_outputs(extent, &mut draw) {
+                let deck = decks.iter_mut().find(|(name, _)| *name == outputs.operation).map(|(_, deck)| deck);
+                let deck = deck.expect("a deck for each operation");
                 for &kind in kinds(precision) {
-                    for (filter, edges, convention) in options(extent, precision, height_type, kind, &mut draw) {
+                    for (filter, edges, convention) in options(extent, precision, height_type, kind, deck) {
                         // Parallax maps have no green.
                         if outputs.normal.is_none() && convention == Convention::Dx && extent == Extent::Full {
                             continue;
@@ -71,19 +74,51 @@ fn options(
     precision: Precision,
     height_type: HeightType,
     kind: Kind,
-    draw: &mut Chance,
+    deck: &mut Deck,
 ) -> Vec<(Filter, Edges, Convention)> {
     let may_cancel = precision == Precision::Fast && height_type == HeightType::F32;
-    let filters = if kind == Kind::Boundaries || may_cancel { &FILTERS[..1] } else { &FILTERS };
+    let is_central = kind == Kind::Boundaries || may_cancel;
+    match extent {
+        Extent::Quick => {
+            let (filter, edges, convention) = deck.next();
+            vec![(if is_central { Filter::Central } else { filter }, edges, convention)]
+        }
+        Extent::Full => {
+            let mut all = every_option();
+            all.retain(|(filter, ..)| !is_central || *filter == Filter::Central);
+            all
+        }
+    }
+}
+
+fn every_option() -> Vec<(Filter, Edges, Convention)> {
     let mut options = Vec::new();
-    for filter in some(extent, draw, filters) {
-        for edges in some(extent, draw, &every_edges()) {
-            for convention in some(extent, draw, &[Convention::Gl, Convention::Dx]) {
-                options.push((filter, edges, convention));
-            }
+    for filter in FILTERS {
+        for edges in every_edges() {
+            options.extend([Convention::Gl, Convention::Dx].map(|convention| (filter, edges, convention)));
         }
     }
     options
+}
+
+/// All options in an order of chance, and then again: each comes as often as any other.
+struct Deck {
+    draw: Chance,
+    left: Vec<(Filter, Edges, Convention)>,
+}
+
+impl Deck {
+    fn new(name: &str) -> Self {
+        Self { draw: Chance::named(0, name), left: Vec::new() }
+    }
+
+    fn next(&mut self) -> (Filter, Edges, Convention) {
+        if self.left.is_empty() {
+            self.left = every_option();
+        }
+        let card = self.draw.below(self.left.len() as u64) as usize;
+        self.left.swap_remove(card)
+    }
 }
 
 /// A normal map of every format, a parallax map of every format, and pairs of them.
