@@ -1,4 +1,4 @@
-//! docs/extremes.md, row by row: each row of its table has one test of its name, which runs on every baker and has its
+//! docs/extremes.md, row by row: each row of its tables has one test of its name, which runs on every baker and has its
 //! expected values written out.
 
 pub mod blend;
@@ -53,7 +53,7 @@ pub fn assert_refused<T>(run: impl Fn(&Baker) -> Result<T>, message: &str) {
     }
 }
 
-/// The names in the first column of the table; every other column says something.
+/// The names in the first columns of the tables; every other column says something.
 fn rows() -> Vec<String> {
     let text = include_str!("../../docs/extremes.md");
     let rows = text.lines().filter_map(|line| line.strip_prefix("| `"));
@@ -76,6 +76,17 @@ fn tests() -> Vec<String> {
         names.extend(tests.map(|test| test.split('(').next().unwrap_or_default().to_owned()));
     }
     names
+}
+
+#[test]
+fn each_operation_has_a_table() {
+    let text = include_str!("../../docs/extremes.md");
+    let names: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("## ")).collect();
+    assert_eq!(names, ["Bakes", "Parallax maps", "Blends", "Tangents", "Shaders", "Sizes, formats and numbers"]);
+    for (name, section) in names.iter().zip(text.split("\n## ").skip(1)) {
+        let head = "| extreme | input | mathematics | result | tested on |\n| --- | --- | --- | --- | --- |\n| `";
+        assert_eq!(section.matches(head).count(), 1, "{name}");
+    }
 }
 
 #[test]
