@@ -8,7 +8,7 @@ mod parallax;
 pub mod shading;
 pub mod tangents;
 
-use crate::support::{Format, Image, Subject, assert_every_baker, assert_every_parallax, every_baker};
+use crate::support::{Format, Image, Subject, assert_each, assert_every_baker, assert_every_parallax, every_baker};
 use std::path::Path;
 use texbake::{Baker, HeightMap, NormalFormat, NormalOptions, ParallaxOptions, Result, Size};
 
@@ -43,14 +43,17 @@ pub fn assert_parallax(map: &HeightMap, options: &ParallaxOptions, numbers: &[f6
     assert_every_parallax(map, options, &image(map.size(), options.format, numbers));
 }
 
+/// What differs, in words.
+fn same<T: PartialEq + std::fmt::Debug>(what: &str, got: &T, expected: &T) -> Result<(), String> {
+    if got == expected { Ok(()) } else { Err(format!("{what}: got {got:?}, expected {expected:?}")) }
+}
+
 /// Every baker refuses with this message.
 pub fn assert_refused<T>(run: impl Fn(&Baker) -> Result<T>, message: &str) {
-    for Subject { name, baker } in every_baker() {
-        match run(baker) {
-            Ok(_) => panic!("{name} does not refuse: {message}"),
-            Err(error) => assert_eq!(error.to_string(), message, "{name}"),
-        }
-    }
+    assert_each(every_baker().iter(), |Subject { name, baker }| match run(baker) {
+        Ok(_) => Err(format!("{name} does not refuse: {message}")),
+        Err(error) => same(name, &error.to_string().as_str(), &message),
+    });
 }
 
 /// The names in the first columns of the tables; every other column says something.
