@@ -200,7 +200,7 @@ fn inputs_that_change_after_they_were_found_fail_alone() {
     let run = run.go_on().ends(1);
     for (name, parts) in [
         ("b", ["the file ends before its last row", "copy or export it again"]),
-        ("d", ["No such file", "check how its path is written"]),
+        ("d", ["it went after it was found", "put it back, or run again without it"]),
         ("e", ["is a directory", "it is a folder"]),
         ("f", ["it is a pipe or a device", "write what it gives into a file"]),
         ("g", ["symbolic links", "failed"]),
