@@ -4,7 +4,8 @@
 //
 // n: the normal of the texel, of length one, n_z above zero. h: the height of its plane above the surface, in any unit.
 // v: towards the eye, in tangent space, of any length between 2^-40 and 2^40: the offset does not depend on it.
-// limit: the longest offset in heights, above zero; 1 is Welsh's, by which an offset is never longer than the height.
+// limit: the longest offset in heights, between 2^-40 and 2^40; 1 is Welsh's, by which an offset is never longer than the
+// height. At or below zero there is no offset. All arguments must be finite: WGSL lets a device take it that they are.
 // Result: what to add to the texture coordinates, in the unit of h.
 //
 // Near n . v = 0 eq. 7.50 has no bound; below, the eye is behind the plane, sees none of it, and the offset would point
@@ -16,7 +17,7 @@
 fn plane_offset(n: vec3<f32>, h: f32, v: vec3<f32>, limit: f32) -> vec2<f32> {
     let along = n.z * v.xy;
     let rise = max(dot(n, v), sqrt(dot(along, along)) / limit);
-    if (rise <= 0.0) {
+    if (limit <= 0.0 || rise <= 0.0) {
         return vec2<f32>();
     }
     return h * (along / rise);

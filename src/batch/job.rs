@@ -11,6 +11,7 @@ use crate::io::{ReadOptions, create_normals, create_parallax};
 use crate::map::{Maps, Size};
 use crate::ops::bake::BakeOptions;
 use crate::stream::{Monitor, RowsOut};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
@@ -59,6 +60,7 @@ pub enum Event<'a> {
 /// threads. The outcomes come back in the order of the jobs.
 pub fn run(jobs: &[Job], at_once: usize, monitor: &Monitor, watch: &(dyn Fn(Event<'_>) + Sync)) -> Vec<Outcome> {
     let next = AtomicUsize::new(0);
+    let was_there: Vec<bool> = jobs.iter().map(|job| job.input.exists()).collect();
     let unopened = |error| OnceLock::from(Outcome::unopened(error));
     let refusals = targets::refusals(&Job::all_files(jobs)).into_iter();
     let outcomes: Vec<OnceLock<Outcome>> =
@@ -67,7 +69,10 @@ pub fn run(jobs: &[Job], at_once: usize, monitor: &Monitor, watch: &(dyn Fn(Even
         while !monitor.is_cancelled() {
             let index = next.fetch_add(1, Relaxed);
             let Some(job) = jobs.get(index) else { break };
-            let run = || job.run(monitor, &|size| watch(Event::Opened { job: index, size }));
+            let run = || {
+                let outcome = job.run(monitor, &|size| watch(Event::Opened { job: index, size }));
+                if was_there[index] { say_if_it_went(&job.input, outcome) } else { outcome }
+            };
             watch(Event::Ended { job: index, outcome: outcomes[index].get_or_init(run) });
         }
     };
@@ -81,6 +86,19 @@ pub fn run(jobs: &[Job], at_once: usize, monitor: &Monitor, watch: &(dyn Fn(Even
         .into_iter()
         .map(|outcome| outcome.into_inner().unwrap_or_else(|| Outcome::unopened(Error::Cancelled)))
         .collect()
+}
+
+/// Of an input that was there when the run began the path is written rightly.
+fn say_if_it_went(input: &Path, outcome: Outcome) -> Outcome {
+    let is_missing = matches!(
+        &outcome.result,
+        Err(Error::Io { path, source }) if path == input && source.kind() == ErrorKind::NotFound
+    );
+    if !is_missing {
+        return outcome;
+    }
+    let went = Error::file(input, "it went after it was found", "put it back, or run again without it");
+    Outcome { result: Err(went), ..outcome }
 }
 
 impl Job {

@@ -7,10 +7,10 @@
 //! Nothing is lost: writers go through `replace`, so that a name stands for the old file or for the complete new one at
 //! any moment, whatever ends the process; after a loss of power too, since bytes are on the disk before they get a name.
 //! What a killed process leaves, `temporary` removes. Models of several files are replaced in an order of which every
-//! state is a whole model (`gltf::write`). Readers go through `input`: a file that changes before its last row is read
-//! is an error, and so are pipes and devices, which are not waited for. Not covered: that several maps of a texture, or
-//! a map and its sidecar, get their names in the same instant; and folders that several machines write into at once
-//! over a network without common locks.
+//! state is a whole model (`gltf::write`). Readers go through `input`: a file that changes before its last row is read is
+//! an error, and so are pipes and devices, which are not waited for. Not covered: that several maps of a texture, or a map
+//! and its sidecar, get their names in the same instant; the order of names after a loss of power, where the file system
+//! does not keep it; and folders that several machines write into at once over a network without common locks.
 
 mod channel;
 mod damage;

@@ -81,16 +81,22 @@ impl FromStr for RawLayout {
     type Err = Error;
 
     /// # Errors
-    /// [`Error::Parameter`] if `text` is not a width, a height and a type.
+    /// [`Error::Parameter`] if `text` is not a width, a height and a type, or they are no size of a map.
     fn from_str(text: &str) -> Result<Self> {
-        let parsed = || {
+        let parts = || {
             let (size, kind) = text.split_once(':')?;
-            let (width, height) = size.split_once('x')?;
             let (kind, _) = *KINDS.iter().find(|(_, name)| *name == kind)?;
-            Some(Self { size: Size::new(width.parse().ok()?, height.parse().ok()?).ok()?, kind })
+            let (width, height) = size.split_once('x')?;
+            let is_number = |side: &str| !side.is_empty() && side.bytes().all(|byte| byte.is_ascii_digit());
+            (is_number(width) && is_number(height)).then_some((width, height, kind))
         };
         let range = "WIDTHxHEIGHT:TYPE with a type of u8, u16le, u16be, f32le, f32be, such as 1025x1025:u16le";
-        parsed().ok_or_else(|| Error::parameter("raw", text, range))
+        let (width, height, kind) = parts().ok_or_else(|| Error::parameter("raw", text, range))?;
+        // A number that no integer holds is too large as well.
+        let [width, height] = [width, height].map(|side| side.parse().unwrap_or(usize::MAX));
+        let range = "at least 1x1 and at most 2147483647 texels on each side";
+        let size = Size::new(width, height).map_err(|_| Error::parameter("raw", text, range))?;
+        Ok(Self { size, kind })
     }
 }
 

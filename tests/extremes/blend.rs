@@ -1,9 +1,9 @@
 //! Two normal maps into one.
 
-use super::assert_refused;
+use super::{assert_refused, same};
 use crate::support::{
-    BIASED8, BIASED16, FLOAT16, FLOAT32, Image, SNORM8, SNORM16, Subject, UNORM8, UNORM16, blend_options, dx,
-    every_baker, flat_map, map_f32, map_u8, map_u16, normal_map, number, pair, weighted, xy,
+    BIASED8, BIASED16, FLOAT16, FLOAT32, Image, SNORM8, SNORM16, Subject, UNORM8, UNORM16, assert_each, blend_options,
+    dx, every_baker, flat_map, map_f32, map_u8, map_u16, normal_map, number, pair, weighted, xy,
 };
 use half::f16;
 use texbake::{BlendInputs, BlendMethod, BlendOptions, Grid, HeightMap, NormalFormat, Weights};
@@ -16,11 +16,12 @@ const FLAT: Texel<'_> = (SNORM8, &[0, 0, 127]);
 /// Every baker blends two texels into these numbers.
 pub fn assert_blend(texels: [Texel<'_>; 2], options: &BlendOptions, mask: Option<&HeightMap>, numbers: &[f64]) {
     let [base, detail] = texels.map(|(format, bits)| normal_map(1, 1, format, bits));
-    for Subject { name, baker } in every_baker() {
-        let inputs = BlendInputs { mask, ..pair(&base, &detail) };
-        let blended = baker.blend(&inputs, options).unwrap_or_else(|error| panic!("{name}: {error}"));
-        assert_eq!(Image::from(&blended).texel(0, 0), numbers, "{name}, {texels:?}, {options:?}");
-    }
+    let inputs = BlendInputs { mask, ..pair(&base, &detail) };
+    assert_each(every_baker().iter(), |Subject { name, baker }| {
+        let what = format!("{name}, {texels:?}, {options:?}");
+        let blended = baker.blend(&inputs, options).map_err(|error| format!("{what}: {error}"))?;
+        same(&what, &Image::from(&blended).texel(0, 0).as_slice(), &numbers)
+    });
 }
 
 fn assert_sum(texels: [Texel<'_>; 2], format: NormalFormat, numbers: [f64; 3]) {
@@ -201,11 +202,11 @@ fn float_components_below_2_to_the_minus_25() {
     assert_sum([(FLOAT32, &[least, 0, one]), (FLOAT32, &[0, 0, one])], FLOAT32, [2f64.powi(-25), 0.0, 1.0]);
     for nothing in [least - 1, minus_zero, minus_subnormal] {
         let [base, detail] = [[nothing, nothing, one], [0, 0, one]].map(|texel| normal_map(1, 1, FLOAT32, &texel));
-        for Subject { name, baker } in every_baker() {
+        assert_each(every_baker().iter(), |Subject { name, baker }| {
             let blended = baker.blend(&pair(&base, &detail), &blend_options(BlendMethod::add(), FLOAT32));
             // To the sign of zero.
-            assert_eq!(Image::from(&blended.expect("a blend")).bits, [0, 0, one], "{name}, {nothing:#x}");
-        }
+            same(&format!("{name}, {nothing:#x}"), &Image::from(&blended.expect("a blend")).bits, &vec![0, 0, one])
+        });
     }
 }
 
@@ -293,10 +294,10 @@ fn blend_ties_under_either_convention() {
 fn detail_of_one_texel() {
     let (base, detail) = (flat_map(5, 3, SNORM8), normal_map(1, 1, SNORM8, &[90, 0, 90]));
     let options = BlendOptions { tile: true, ..blend_options(BlendMethod::add(), SNORM8) };
-    for Subject { name, baker } in every_baker() {
+    assert_each(every_baker().iter(), |Subject { name, baker }| {
         let blended = Image::from(&baker.blend(&pair(&base, &detail), &options).expect("a blend"));
-        assert_eq!(blended.bits, [90, 0, 90].repeat(15), "{name}");
-    }
+        same(name, &blended.bits, &[90, 0, 90].repeat(15))
+    });
     assert_refused(
         |baker| baker.blend(&pair(&base, &detail), &BlendOptions { tile: false, ..options }),
         "size of the second map is 1 x 1: it must be 5 x 3, as the first map's; to repeat a smaller one over the first, \

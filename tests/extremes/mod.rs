@@ -1,4 +1,4 @@
-//! docs/extremes.md, row by row: each row of its table has one test of its name, which runs on every baker and has its
+//! docs/extremes.md, row by row: each row of its tables has one test of its name, which runs on every baker and has its
 //! expected values written out.
 
 pub mod blend;
@@ -8,7 +8,7 @@ mod parallax;
 pub mod shading;
 pub mod tangents;
 
-use crate::support::{Format, Image, Subject, assert_every_baker, assert_every_parallax, every_baker};
+use crate::support::{Format, Image, Subject, assert_each, assert_every_baker, assert_every_parallax, every_baker};
 use std::path::Path;
 use texbake::{Baker, HeightMap, NormalFormat, NormalOptions, ParallaxOptions, Result, Size};
 
@@ -43,17 +43,20 @@ pub fn assert_parallax(map: &HeightMap, options: &ParallaxOptions, numbers: &[f6
     assert_every_parallax(map, options, &image(map.size(), options.format, numbers));
 }
 
-/// Every baker refuses with this message.
-pub fn assert_refused<T>(run: impl Fn(&Baker) -> Result<T>, message: &str) {
-    for Subject { name, baker } in every_baker() {
-        match run(baker) {
-            Ok(_) => panic!("{name} does not refuse: {message}"),
-            Err(error) => assert_eq!(error.to_string(), message, "{name}"),
-        }
-    }
+/// What differs, in words.
+fn same<T: PartialEq + std::fmt::Debug>(what: &str, got: &T, expected: &T) -> Result<(), String> {
+    if got == expected { Ok(()) } else { Err(format!("{what}: got {got:?}, expected {expected:?}")) }
 }
 
-/// The names in the first column of the table; every other column says something.
+/// Every baker refuses with this message.
+pub fn assert_refused<T>(run: impl Fn(&Baker) -> Result<T>, message: &str) {
+    assert_each(every_baker().iter(), |Subject { name, baker }| match run(baker) {
+        Ok(_) => Err(format!("{name} does not refuse: {message}")),
+        Err(error) => same(name, &error.to_string().as_str(), &message),
+    });
+}
+
+/// The names in the first columns of the tables; every other column says something.
 fn rows() -> Vec<String> {
     let text = include_str!("../../docs/extremes.md");
     let rows = text.lines().filter_map(|line| line.strip_prefix("| `"));
@@ -76,6 +79,17 @@ fn tests() -> Vec<String> {
         names.extend(tests.map(|test| test.split('(').next().unwrap_or_default().to_owned()));
     }
     names
+}
+
+#[test]
+fn each_operation_has_a_table() {
+    let text = include_str!("../../docs/extremes.md");
+    let names: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("## ")).collect();
+    assert_eq!(names, ["Bakes", "Parallax maps", "Blends", "Tangents", "Shaders", "Sizes, formats and numbers"]);
+    for (name, section) in names.iter().zip(text.split("\n## ").skip(1)) {
+        let head = "| extreme | input | mathematics | result | tested on |\n| --- | --- | --- | --- | --- |\n| `";
+        assert_eq!(section.matches(head).count(), 1, "{name}");
+    }
 }
 
 #[test]

@@ -1,9 +1,9 @@
 //! Height maps into normal maps.
 
-use super::{Expected, assert_all_normals, assert_normals, assert_refused};
+use super::{Expected, assert_all_normals, assert_normals, assert_refused, same};
 use crate::support::{
-    BIASED8, EDGES, FILTERS, FLOAT16, FLOAT32, FORMATS, Image, SNORM8, SNORM16, Subject, UNORM8, UNORM16, dx,
-    every_baker, map_f32, map_u8, map_u16, options, xy,
+    BIASED8, EDGES, FILTERS, FLOAT16, FLOAT32, FORMATS, Image, SNORM8, SNORM16, Subject, UNORM8, UNORM16, assert_each,
+    dx, every_baker, map_f32, map_u8, map_u16, options, xy,
 };
 use texbake::{Edge, Edges, Grid, HeightMap, NormalFormat, NormalOptions, Scale, Size};
 
@@ -367,10 +367,10 @@ fn steepest_slope_in_two_channels() {
 
 /// One texel, on every baker.
 pub fn assert_texel(map: &HeightMap, scale: &str, format: NormalFormat, [x, y]: [usize; 2], numbers: [f64; 3]) {
-    for Subject { name, baker } in every_baker() {
+    assert_each(every_baker().iter(), |Subject { name, baker }| {
         let baked = Image::from(&baker.normal(map, &options(scale, format)).expect("a bake"));
-        assert_eq!(baked.texel(x, y), numbers, "{name}, {scale}, {format:?}");
-    }
+        same(&format!("{name}, {scale}, {format:?}"), &baked.texel(x, y).as_slice(), &numbers.as_slice())
+    });
 }
 
 /// 0 < x <= 1 and x = E/255 with E even are the components that lie half-way between two 8-bit codes. Of a normal
@@ -427,7 +427,7 @@ fn every_pythagorean_tie() {
         by_scale.entry([510 * common, c]).or_default().push([a, b, common, d]);
     }
     println!("{} scales", by_scale.len());
-    let mut ties = 0;
+    let mut tied = 0;
     for ([p, q], normals) in by_scale {
         let signed = |[a, b, common, d]: [i64; 4]| {
             [[1, 1], [-1, 1], [1, -1], [-1, -1]].map(|[i, j]| [i * a, j * b, i * a / common, j * b / common, d])
@@ -445,19 +445,26 @@ fn every_pythagorean_tie() {
                 _ => 0,
             }
         });
-        for Subject { name, baker } in every_baker() {
+        let expected: Vec<([i64; 4], [f64; 3])> = cells
+            .iter()
+            .map(|&[a, b, .., d]| {
+                let c = root(d * d - a * a - b * b).expect("a quadruple");
+                // A code is the floor of 255 (v + 1)/2 + 1/2, which is whole for a tie alone.
+                let is_tie = |part: i64| part != 0 && (255 * (d + part) + d) % (2 * d) == 0;
+                assert!([a, b, c].into_iter().any(is_tie), "({a}, {b}, {c})/{d} ties nowhere");
+                ([a, b, c, d], [a, b, c].map(|part| (255 * (d + part) + d).div_euclid(2 * d) as f64))
+            })
+            .collect();
+        tied += expected.len();
+        assert_each(every_baker().iter(), |Subject { name, baker }| {
             let baked = baker.normal(&map, &options(&format!("{p}/{q}"), UNORM8)).expect("a bake");
             let baked = Image::from(&baked);
-            for (i, &[a, b, .., d]) in cells.iter().enumerate() {
-                let c = root(d * d - a * a - b * b).expect("a quadruple");
-                // floor(255 (v + 1)/2 + 1/2)
-                let codes = [a, b, c].map(|part| (255 * (d + part) + d).div_euclid(2 * d) as f64);
-                assert_eq!(baked.texel(3 * i + 1, 1), codes, "{name}: ({a}, {b}, {c})/{d}");
-                ties += [a, b, c].iter().filter(|part| (255 * (d + **part) + d) % (2 * d) == 0).count();
-            }
-        }
+            expected.iter().enumerate().try_for_each(|(i, ([a, b, c, d], codes))| {
+                same(&format!("{name}: ({a}, {b}, {c})/{d}"), &baked.texel(3 * i + 1, 1).as_slice(), &codes.as_slice())
+            })
+        });
     }
-    assert!(ties > 0);
+    assert_eq!(tied, 4 * 2_772);
 }
 
 #[test]

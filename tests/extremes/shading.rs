@@ -76,3 +76,21 @@ fn view_vectors_of_any_length() {
         assert_offset(FLAT, 0.5, [3.0 * length, 4.0 * length, length], 1.0, [0.3, 0.4]);
     }
 }
+
+/// Nothing is as long as nothing, or shorter.
+#[test]
+fn limit_at_or_below_zero() {
+    for limit in [0.0, -0.0, -f32::from_bits(1), -1.0, f32::MIN] {
+        for v in [[3.0, 4.0, 1.0], [3.0, 4.0, 0.0], [0.0, 0.0, 1.0]] {
+            assert_offset(FLAT, 0.5, v, limit, [0.0, 0.0]);
+        }
+    }
+}
+
+#[test]
+fn limits_at_their_ends() {
+    let (least, greatest) = (2f32.powi(-40), 2f32.powi(40));
+    assert_offset(FLAT, 0.5, [3.0, 4.0, 5.0], least, [0.3 * least, 0.4 * least]);
+    assert_offset(FLAT, 0.5, [3.0, 4.0, 0.0], greatest, [0.3 * greatest, 0.4 * greatest]);
+    assert_offset(FLAT, 0.5, [3.0, 4.0, 1.0], greatest, [1.5, 2.0]);
+}

@@ -1,8 +1,8 @@
 //! Tangents of meshes. The triangle of most rows has corners at (0, 0), (1, 0) and (0, 1), u to the right and v down:
 //! its tangent is (1, 0, 0), its sign 1.
 
-use super::assert_refused;
-use crate::support::{Subject, changed, every_baker, flat_mesh, mesh, without_normals};
+use super::{assert_refused, same};
+use crate::support::{Subject, assert_each, changed, every_baker, flat_mesh, mesh, without_normals};
 use texbake::{Mesh, Result, TangentMethod, TangentOptions, TangentReport};
 
 const MIKKTSPACE: TangentMethod = TangentMethod::Mikktspace;
@@ -29,13 +29,13 @@ pub fn assert_tangents(mesh: &Mesh, method: TangentMethod, tangents: &[[f32; 4]]
 fn assert_tangents_with(mesh: &Mesh, options: &TangentOptions, tangents: &[[f32; 4]], found: TangentReport) {
     let report = TangentReport { triangles: mesh.triangles().len(), vertices: mesh.positions().len(), ..found };
     let bits = |tangents: &[[f32; 4]]| -> Vec<[u32; 4]> { tangents.iter().map(|t| t.map(f32::to_bits)).collect() };
-    for Subject { name, baker } in every_baker() {
+    assert_each(every_baker().iter(), |Subject { name, baker }| {
         let what = format!("{name}, {}", options.method);
-        let made = baker.tangents(mesh, options).unwrap_or_else(|error| panic!("{what}: {error}"));
-        assert_eq!(made.tangents, tangents, "{what}");
-        assert_eq!(bits(&made.tangents), bits(tangents), "{what}");
-        assert_eq!(made.report, report, "{what}");
-    }
+        let made = baker.tangents(mesh, options).map_err(|error| format!("{what}: {error}"))?;
+        same(&what, &made.tangents.as_slice(), &tangents)?;
+        same(&what, &bits(&made.tangents), &bits(tangents))?;
+        same(&what, &made.report, &report)
+    });
 }
 
 fn nothing() -> TangentReport {

@@ -1,6 +1,7 @@
 //! Folders that take no file, and inputs that change, go, or were never files.
 
 use super::paused::Paused;
+use super::watched::{PAUSE, reaches};
 use crate::cli::support::{Folder, Run, bumps8, bumps16};
 use crate::cli::tangents::{Model, sheet};
 use std::fs::{self, File, Permissions};
@@ -181,10 +182,8 @@ fn inputs_that_change_after_they_were_found_fail_alone() {
         folder.grey16(&format!("tex/{name}_height.png"), 40, 40, bumps16);
     }
     let last = folder.grey16("tex/i_height.png", 7, 5, bumps16);
-    let run = Paused::spawn(folder.command(&["bake", "tex", "--out", "out", "--jobs", "1", "--report", "r.json"]));
-    while !folder.path("out/a_normal.png").exists() {
-        std::thread::yield_now();
-    }
+    let mut run = Paused::spawn(folder.command(&["bake", "tex", "--out", "out", "--jobs", "1", "--report", "r.json"]));
+    assert!(reaches(&mut run.child, PAUSE, || folder.path("out/a_normal.png").exists()), "it ended");
     // It waits at the line of the first texture, and has not opened another.
     let path = |name: &str| folder.path(&format!("tex/{name}_height.png"));
     File::options().write(true).open(path("b")).unwrap().set_len(100).unwrap();
@@ -200,7 +199,7 @@ fn inputs_that_change_after_they_were_found_fail_alone() {
     let run = run.go_on().ends(1);
     for (name, parts) in [
         ("b", ["the file ends before its last row", "copy or export it again"]),
-        ("d", ["No such file", "check how its path is written"]),
+        ("d", ["it went after it was found", "put it back, or run again without it"]),
         ("e", ["is a directory", "it is a folder"]),
         ("f", ["it is a pipe or a device", "write what it gives into a file"]),
         ("g", ["symbolic links", "failed"]),
@@ -349,10 +348,8 @@ fn meddled(meddle: impl Fn(&Folder), judge: impl Fn(&Folder, Run)) {
         let layout = sparse_raw(&folder, "h.raw", rows);
         fs::create_dir(folder.path("out")).unwrap();
         let mut command = folder.command(&["normal", "h.raw", "--raw", &layout, "-o", "out/n.png"]);
-        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        while folder.files("out").is_empty() {
-            std::thread::yield_now();
-        }
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        assert!(reaches(&mut child, PAUSE, || !folder.files("out").is_empty()), "it ended without an output");
         meddle(&folder);
         let run = Run::from(child.wait_with_output().unwrap());
         if run.status != 0 {

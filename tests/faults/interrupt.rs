@@ -1,5 +1,6 @@
 //! An interrupt ends a run cleanly, a second one at once.
 
+use super::watched::{PAUSE, reaches};
 use crate::cli::support::{Folder, Run, read_png};
 use crate::cli::tangents::{Model, sheet};
 use std::process::{Command, Output, Stdio};
@@ -7,14 +8,13 @@ use std::process::{Command, Output, Stdio};
 /// So many that no machine is done before the signal comes.
 const FILES: usize = 400;
 
-/// What a run says that gets a signal as soon as `is_time`; it is told the process's number.
+/// What a run says that gets a signal as soon as `is_time`, or that ends before; it is told the process's number.
 fn signalled(mut command: Command, signal: &str, is_time: impl Fn(&str) -> bool) -> Output {
-    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let id = child.id().to_string();
-    while !is_time(&id) {
-        std::thread::yield_now();
+    if reaches(&mut child, PAUSE, || is_time(&id)) {
+        assert!(Command::new("kill").args([signal, &id]).status().unwrap().success());
     }
-    assert!(Command::new("kill").args([signal, &id]).status().unwrap().success());
     child.wait_with_output().unwrap()
 }
 

@@ -1,6 +1,7 @@
 //! A killed process leaves whole files, and what else it leaves the next one removes.
 
 use super::paused::Paused;
+use super::watched::{PAUSE, reaches};
 use crate::cli::support::{Folder, Run, bumps8, bumps16};
 use crate::cli::tangents::{Model, sheet};
 use crate::support::Random;
@@ -9,6 +10,7 @@ use std::collections::{BTreeMap, HashSet};
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::Stdio;
+use std::time::{Duration, Instant};
 
 const KILLS: usize = 20;
 const SIGKILL: i32 = 9;
@@ -53,19 +55,48 @@ fn leftovers(folder: &Folder, below: &str) -> usize {
 }
 
 /// Kills a run as soon as `is_time`; whether it was still running.
-fn killed(folder: &Folder, arguments: &[&str], mut is_time: impl FnMut() -> bool) -> bool {
+fn killed(folder: &Folder, arguments: &[&str], is_time: impl FnMut() -> bool) -> bool {
     let mut command = folder.command(arguments);
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-    while !is_time() {
-        if let Some(status) = child.try_wait().unwrap() {
-            assert!(status.success());
-            return false;
-        }
+    // Without a pause, which would miss most of what a folder shows.
+    if reaches(&mut child, Duration::ZERO, is_time) {
+        child.kill().unwrap();
     }
-    child.kill().unwrap();
     let status = child.wait().unwrap();
     assert!(status.success() || status.signal() == Some(SIGKILL), "{status}");
     !status.success()
+}
+
+/// When a run is killed: at an event that is looked for in its folder, for a number of attempts; after these, should a
+/// busy machine have let the events pass unseen, at a random moment of the time that the last whole run took.
+struct Moments {
+    attempts_by_event: usize,
+    whole_run: Duration,
+}
+
+impl Moments {
+    fn for_attempts(attempts_by_event: usize) -> Self {
+        Self { attempts_by_event, whole_run: Duration::ZERO }
+    }
+
+    /// A test of whether it is time, which asks for the event where that counts.
+    fn of_attempt(
+        &self,
+        attempt: usize,
+        random: &mut Random,
+        mut is_event: impl FnMut() -> bool,
+    ) -> impl FnMut() -> bool {
+        let (begin, moment) = (Instant::now(), self.whole_run.mul_f64(random.below(1000) as f64 / 1000.0));
+        let is_by_event = attempt < self.attempts_by_event;
+        move || if is_by_event { is_event() } else { begin.elapsed() >= moment }
+    }
+
+    /// A run that nothing disturbs.
+    fn whole(&mut self, run: impl FnOnce()) {
+        let begin = Instant::now();
+        run();
+        self.whole_run = begin.elapsed();
+    }
 }
 
 #[test]
@@ -82,7 +113,7 @@ fn a_killed_folder_bake_leaves_whole_files_and_the_next_completes_it() {
     assert!(before.iter().all(|(name, bytes)| after[name] != *bytes), "another scale is another file");
 
     let mut random = seeded();
-    let (mut kills, mut left) = (0, 0);
+    let (mut kills, mut left, mut moments) = (0, 0, Moments::for_attempts(5 * KILLS));
     // Of two, one finds an empty folder and the other the maps of an earlier bake.
     for attempt in 0..10 * KILLS {
         if kills == KILLS {
@@ -98,10 +129,11 @@ fn a_killed_folder_bake_leaves_whole_files_and_the_next_completes_it() {
         let mut seen: HashSet<String> = folder.files("out").into_iter().collect();
         let mut events = 0;
         let arguments = [BAKE.as_slice(), &["--scale", "8"]].concat();
-        let was_killed = killed(&folder, &arguments, || {
+        let is_event = || {
             events += folder.files("out").into_iter().filter(|name| seen.insert(name.clone())).count();
             events >= moment
-        });
+        };
+        let was_killed = killed(&folder, &arguments, moments.of_attempt(attempt, &mut random, is_event));
         kills += usize::from(was_killed);
 
         for (name, bytes) in contents(&folder, "out").iter().filter(|(name, _)| !is_temporary(name)) {
@@ -109,7 +141,7 @@ fn a_killed_folder_bake_leaves_whole_files_and_the_next_completes_it() {
             assert!(is_old || after[name] == *bytes, "{name} is neither the old file nor the new one");
         }
         left += leftovers(&folder, "out");
-        folder.run(&arguments).ends(0);
+        moments.whole(|| drop(folder.run(&arguments).ends(0)));
         assert!(contents(&folder, "out") == after, "the next bake completes it: {:?}", folder.files("out"));
     }
     assert_eq!(kills, KILLS);
@@ -124,10 +156,8 @@ fn what_a_living_process_writes_stays() {
     // It holds its report open, and waits at the line of its first texture.
     let arguments = ["bake", "tex", "--out", "out", "--jobs", "1", "--report", "out/report.json"];
     let mut first = Paused::spawn(folder.command(&arguments));
-    while !folder.files("out").iter().any(|name| name.ends_with(".png")) {
-        assert!(first.child.try_wait().unwrap().is_none());
-        std::thread::yield_now();
-    }
+    let has_output = || folder.files("out").iter().any(|name| name.ends_with(".png"));
+    assert!(reaches(&mut first.child, PAUSE, has_output), "it ended");
     assert_eq!(leftovers(&folder, "out"), 1, "its report is open, and the dead process's file gone");
 
     folder.file("out/.texbake-agains.tmp", "half a map");
@@ -165,7 +195,10 @@ fn model(path: &Path) -> (Value, Vec<Vec<u8>>) {
     let mut json: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
     let buffers = json["buffers"].as_array_mut().unwrap().iter_mut().map(|buffer| {
         let uri = buffer.as_object_mut().unwrap().remove("uri").unwrap();
-        std::fs::read(path.with_file_name(uri.as_str().unwrap())).unwrap()
+        let mut bytes = std::fs::read(path.with_file_name(uri.as_str().unwrap())).unwrap();
+        // What is behind its length belongs to no buffer.
+        bytes.truncate(buffer["byteLength"].as_u64().unwrap() as usize);
+        bytes
     });
     let buffers = buffers.collect();
     (json, buffers)
@@ -186,8 +219,8 @@ fn a_model_killed_while_it_is_replaced_is_the_old_or_the_new_one() {
     assert!(before != after, "the other convention is another model");
 
     let mut random = seeded();
-    let mut kills = 0;
-    for _ in 0..50 * KILLS {
+    let (mut kills, mut moments) = (0, Moments::for_attempts(30 * KILLS));
+    for attempt in 0..50 * KILLS {
         if kills == KILLS {
             break;
         }
@@ -196,14 +229,15 @@ fn a_model_killed_while_it_is_replaced_is_the_old_or_the_new_one() {
         // From the first temporary file on, some looks at the folder.
         let looks = random.below(40);
         let mut looked = 0;
-        let was_killed = killed(&folder, &arguments("gl"), || {
+        let is_event = || {
             looked += u64::from(looked > 0 || leftovers(&folder, "out") > 0);
             looked > looks
-        });
+        };
+        let was_killed = killed(&folder, &arguments("gl"), moments.of_attempt(attempt, &mut random, is_event));
         kills += usize::from(was_killed);
         let found = model(&path);
         assert!(found == before || found == after, "neither the old model nor the new one: {:?}", folder.files("out"));
-        folder.run(&arguments("gl")).ends(0);
+        moments.whole(|| drop(folder.run(&arguments("gl")).ends(0)));
         assert!(model(&path) == after);
         assert_eq!(folder.files("out"), ["m.bin", "m.gltf"]);
     }

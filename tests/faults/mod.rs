@@ -14,3 +14,5 @@ mod kill;
 mod paused;
 #[cfg(all(feature = "cli", target_os = "linux"))]
 mod unheard;
+#[cfg(all(feature = "cli", unix))]
+mod watched;

@@ -1,9 +1,9 @@
 //! Interrupts of a run whose words nobody reads.
 
 use super::paused::Paused;
+use super::watched::{PAUSE, reaches};
 use crate::cli::support::{Folder, bumps8};
 use std::process::Command;
-use std::time::{Duration, Instant};
 
 /// A bake of three textures that nobody listens to: it waits at the line of the first one, its report open.
 struct Unheard {
@@ -20,10 +20,7 @@ impl Unheard {
             folder.grey8(&format!("tex/{name}_height.png"), 9, 9, bumps8);
         }
         let mut run = Paused::spawn(folder.command(&Self::ARGUMENTS));
-        while !folder.path("out/a_normal.png").exists() {
-            assert!(run.child.try_wait().unwrap().is_none());
-            std::thread::yield_now();
-        }
+        assert!(reaches(&mut run.child, PAUSE, || folder.path("out/a_normal.png").exists()), "it ended");
         Self { folder, run }
     }
 
@@ -33,12 +30,12 @@ impl Unheard {
     }
 
     /// Waits until it has taken note of an interrupt: then a thread is about to say so.
-    fn wait_until_interrupted(&self) {
+    fn wait_until_interrupted(&mut self) {
         let threads = format!("/proc/{}/task", self.run.child.id());
         let name = |thread: std::fs::DirEntry| std::fs::read_to_string(thread.path().join("comm")).unwrap_or_default();
-        while !std::fs::read_dir(&threads).unwrap().any(|thread| name(thread.unwrap()) == "interrupt\n") {
-            std::thread::yield_now();
-        }
+        let is_interrupted =
+            || std::fs::read_dir(&threads).unwrap().any(|thread| name(thread.unwrap()) == "interrupt\n");
+        assert!(reaches(&mut self.run.child, PAUSE, is_interrupted), "it ended");
     }
 }
 
@@ -64,18 +61,8 @@ fn a_second_interrupt_ends_the_run_at_once() {
         bake.wait_until_interrupted();
         // Nobody listens yet: it can neither go on nor end cleanly.
         bake.send(signals[1]);
-        let patience = Instant::now() + Duration::from_secs(60);
-        let status = loop {
-            if let Some(status) = bake.run.child.try_wait().unwrap() {
-                break status;
-            }
-            if Instant::now() > patience {
-                bake.run.child.kill().unwrap();
-                panic!("it does not end");
-            }
-            std::thread::yield_now();
-        };
-        assert_eq!(status.code(), Some(130));
+        assert!(!reaches(&mut bake.run.child, PAUSE, || false));
+        assert_eq!(bake.run.child.wait().unwrap().code(), Some(130));
         let files = bake.folder.files("out");
         assert_eq!(files.len(), 2, "the report that was open is left: {files:?}");
         bake.folder.run(&[&Unheard::ARGUMENTS[..], &["--quiet"]].concat()).ends(0);

@@ -48,8 +48,13 @@ fn a_layout_is_a_size_and_a_type() {
     for text in ["1025x1025:u16le", "1x1:u8", "7x3:f32be", "2x9:u16be", "5x5:f32le"] {
         assert_eq!(text.parse::<RawLayout>().unwrap().to_string(), text);
     }
-    for text in ["", "4x4", "4x4:u16", "0x4:u8", "4x-4:u8", "4:u8", "4x4:u8le", "4x4:U8", "9999999999x1:u8"] {
+    for text in ["", "4x4", "4x4:u16", "4x-4:u8", "4x+4:u8", "x4:u8", "4:u8", "4x4:u8le", "4x4:U8", "0x4:u16"] {
         let message = text.parse::<RawLayout>().unwrap_err().to_string();
         assert!(message.starts_with(&format!("raw is {text}: it must be WIDTHxHEIGHT:TYPE")), "{message}");
+    }
+    for text in ["0x4:u8", "4x0:u8", "2147483648x1:f32le", "9999999999x1:u8", "1x99999999999999999999:u8"] {
+        let message = text.parse::<RawLayout>().unwrap_err().to_string();
+        let range = "at least 1x1 and at most 2147483647 texels on each side";
+        assert_eq!(message, format!("raw is {text}: it must be {range}"));
     }
 }

@@ -1,9 +1,10 @@
 //! Every baker that this machine and this build have.
 
-use super::{Image, assert_same};
+use super::{Format, Image, differences};
 use std::sync::OnceLock;
 use texbake::{
-    Baker, BlendInputs, BlendOptions, HeightMap, NormalMap, NormalOptions, ParallaxFormat, ParallaxOptions, Precision,
+    Baker, BlendInputs, BlendOptions, CodeMap, HeightMap, NormalMap, NormalOptions, ParallaxFormat, ParallaxOptions,
+    Precision,
 };
 
 /// A baker under test.
@@ -53,12 +54,27 @@ fn open() -> Bakers {
     Bakers { found, missing }
 }
 
+/// Fails with what `check` says of each baker that fails it: one does not hide the others.
+pub fn assert_each(
+    bakers: impl Iterator<Item = &'static Subject>,
+    check: impl Fn(&'static Subject) -> Result<(), String>,
+) {
+    let failures: Vec<String> = bakers.filter_map(|subject| check(subject).err()).collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// A map that a baker made, or failed to make, beside the expected one.
+fn same<F: Format>(what: &str, made: texbake::Result<CodeMap<F>>, expected: &Image<F>) -> Result<(), String> {
+    let made = made.map_err(|error| format!("{what}: {error}"))?;
+    differences(&Image::from(&made), expected).map_err(|report| format!("{what}: {report}"))
+}
+
 /// Every baker makes exactly the expected codes of a height map.
 pub fn assert_every_baker(map: &HeightMap, options: &NormalOptions, expected: &Image) {
-    for Subject { name, baker } in every_baker() {
-        let baked = baker.normal(map, options).unwrap_or_else(|error| panic!("{name}, {options:?}: {error}"));
-        assert_same(format_args!("{name}, {} heights, {options:?}", map.height_type()), &Image::from(&baked), expected);
-    }
+    assert_each(every_baker().iter(), |Subject { name, baker }| {
+        let what = format!("{name}, {} heights, {options:?}", map.height_type());
+        same(&what, baker.normal(map, options), expected)
+    });
 }
 
 /// Every baker blends two maps into exactly the expected codes.
@@ -74,28 +90,24 @@ pub fn assert_blends(
     expected: &Image,
 ) {
     let formats = [inputs.base.format(), inputs.detail.format()];
-    for Subject { name, baker } in bakers {
-        let what = format!("{name}, {formats:?}, {options:?}");
-        let blended = baker.blend(inputs, options).unwrap_or_else(|error| panic!("{what}: {error}"));
-        assert_same(what, &Image::from(&blended), expected);
-    }
+    assert_each(bakers, |Subject { name, baker }| {
+        same(&format!("{name}, {formats:?}, {options:?}"), baker.blend(inputs, options), expected)
+    });
 }
 
 /// Every baker makes exactly the expected parallax map of a height map.
 pub fn assert_every_parallax(map: &HeightMap, options: &ParallaxOptions, expected: &Image<ParallaxFormat>) {
-    for Subject { name, baker } in every_baker() {
+    assert_each(every_baker().iter(), |Subject { name, baker }| {
         let what = format!("{name}, {} heights, {options:?}", map.height_type());
-        let baked = baker.parallax(map, options).unwrap_or_else(|error| panic!("{what}: {error}"));
-        assert_same(what, &Image::from(&baked), expected);
-    }
+        same(&what, baker.parallax(map, options), expected)
+    });
 }
 
 /// Every baker makes exactly the expected parallax map of a height map and a normal map.
 pub fn assert_every_parallax_with_normals(map: &HeightMap, normals: &NormalMap, expected: &Image<ParallaxFormat>) {
-    for Subject { name, baker } in every_baker() {
+    assert_each(every_baker().iter(), |Subject { name, baker }| {
         let what = format!("{name}, {} heights, {:?}, {:?}", map.height_type(), normals.format(), expected.format);
         let baked = baker.parallax_with_normals(map, normals, expected.format, Precision::Exact);
-        let baked = baked.unwrap_or_else(|error| panic!("{what}: {error}"));
-        assert_same(what, &Image::from(&baked), expected);
-    }
+        same(&what, baked, expected)
+    });
 }

@@ -16,7 +16,7 @@ mod random;
 mod shaders;
 
 pub use bakers::{
-    Subject, assert_blends, assert_every_baker, assert_every_blend, assert_every_parallax,
+    Subject, assert_blends, assert_each, assert_every_baker, assert_every_blend, assert_every_parallax,
     assert_every_parallax_with_normals, bakers, every_baker,
 };
 pub use boundaries::{convergent, factor_and_centre, rounded_by_f64};

@@ -3,6 +3,8 @@
 //! A model of several files is at any moment the old one or the new one. Where a file of the old model gets other
 //! bytes, the new model first refers to a stand-in of it, `name.texbake.bin`, then the file is replaced, then the model
 //! refers to it, and then the stand-in goes: whatever the process is killed between, the model in place has its bytes.
+//! That is an order of names. A loss of power keeps each file's bytes, which are on the disk before it gets its name, but
+//! the file system may keep a later name and lose an earlier one, unless it keeps their order, as journals do.
 
 use super::container::{BIN, JSON, MAGIC, read_file};
 use super::document::{Document, ModelFile, Origin, index};
@@ -17,11 +19,15 @@ use serde_json::{Value, json};
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashSet};
 use std::ffi::OsStr;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Component, Path, PathBuf};
 
 /// Where the parts of a merged buffer begin: as much as any extension asks for.
 const PART_ALIGNMENT: usize = 8;
+
+/// What a stand-in ends with, behind its buffer (glTF 2.0, section 3.6.1: a buffer's file may be longer than the
+/// buffer): no other file with such a name is replaced or removed.
+const STAND_IN_MARK: &[u8] = b"texbake stand-in";
 
 /// A format that models are written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,8 +94,9 @@ pub(super) fn steps(
     let old_buffers = buffers_of_old_model(path);
     files.iter().try_for_each(|file| file.check_place(&old_buffers))?;
     let stand_ins: Vec<NewFile> = files.iter().filter_map(|file| file.stand_in(&old_buffers)).collect();
+    stand_ins.iter().try_for_each(NewFile::check_stand_in)?;
     let for_now = refer_to(&stand_ins, &edited.json, path);
-    let is_left = |place: &PathBuf| place.exists() && files.iter().all(|file| file.path != *place);
+    let is_left = |place: &PathBuf| is_stand_in(place) && files.iter().all(|file| file.path != *place);
     let left = files.iter().map(|file| stand_in(&file.path)).filter(is_left);
     let obsolete: Vec<PathBuf> = left.chain(stand_ins.iter().map(|file| file.path.clone())).collect();
 
@@ -110,11 +117,23 @@ fn gltf(json: &Value) -> Parts<'static> {
     vec![serde_json::to_vec_pretty(json).expect("keys are strings").into()]
 }
 
-/// What stands in for a file while it is replaced. Nothing else has such a name, so one that is left may go.
+/// What stands in for a file while it is replaced.
 fn stand_in(file: &Path) -> PathBuf {
     let mut extension = OsStr::new("texbake").to_owned();
     file.extension().into_iter().for_each(|own| extension.extend([OsStr::new("."), own]));
     file.with_extension(extension)
+}
+
+/// Whether a file is a stand-in, which a killed process left: what the user calls so has another end.
+fn is_stand_in(path: &Path) -> bool {
+    let end = || {
+        let mut file = input::open(path).ok()?;
+        file.seek(SeekFrom::End(-(STAND_IN_MARK.len() as i64))).ok()?;
+        let mut end = Vec::new();
+        file.read_to_end(&mut end).ok()?;
+        Some(end)
+    };
+    end().is_some_and(|end| end == STAND_IN_MARK)
 }
 
 /// The model that refers to stand-ins, if there are any.
@@ -181,7 +200,17 @@ impl NewFile<'_> {
     fn stand_in(&self, buffers: &[PathBuf]) -> Option<Self> {
         let place = std::fs::canonicalize(&self.path).ok()?;
         let replaces = buffers.contains(&place) && !self.is_content_of(&place);
-        replaces.then(|| Self { path: stand_in(&self.path), parts: self.parts.clone() })
+        let mark = std::iter::once(Cow::Borrowed(STAND_IN_MARK));
+        replaces.then(|| Self { path: stand_in(&self.path), parts: self.parts.iter().cloned().chain(mark).collect() })
+    }
+
+    /// Fails if the stand-in would replace a file that is none.
+    fn check_stand_in(&self) -> Result<()> {
+        if is_stand_in(&self.path) || !self.path.exists() {
+            return Ok(());
+        }
+        let reason = "its name is needed while the model is replaced, and it is no file of texbake's";
+        Err(Error::file(&self.path, reason, "move or rename it, or write the model as .glb or into another folder"))
     }
 
     fn write(&self) -> Result<Replacement> {

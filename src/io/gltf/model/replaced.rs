@@ -52,7 +52,10 @@ fn read(path: &Path) -> (Value, Vec<Vec<u8>>) {
     let mut json: Value = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
     let mut bytes = |buffer: &mut Value| {
         let uri = buffer.as_object_mut().unwrap().remove("uri").unwrap();
-        fs::read(path.with_file_name(uri.as_str().unwrap())).unwrap()
+        let mut bytes = fs::read(path.with_file_name(uri.as_str().unwrap())).unwrap();
+        // What is behind its length belongs to no buffer.
+        bytes.truncate(buffer["byteLength"].as_u64().unwrap() as usize);
+        bytes
     };
     let buffers = json["buffers"].as_array_mut().unwrap().iter_mut().map(&mut bytes).collect();
     (json, buffers)
@@ -155,6 +158,31 @@ fn what_stays_the_same_needs_no_stand_in() {
     let Replaced { output, folder: _folder, .. } = in_its_place();
     let model = with_tangents(&output, 1.0);
     assert_eq!(steps(&model, &output).iter().map(name).collect::<Vec<_>>(), ["m_tangents.bin", "m.gltf"]);
+}
+
+/// The user's own file, which has a stand-in's name: it stays where none is needed, and is an error where one is.
+#[test]
+fn another_file_with_the_name_of_a_stand_in_stays() {
+    for content in [&b"mine"[..], b"", b"of the user, and longer than the mark of a stand-in"] {
+        let Replaced { folder, output, model } = in_its_place();
+        let mine = folder.path().join("m_tangents.texbake.bin");
+        fs::write(&mine, content).unwrap();
+        with_tangents(&output, 1.0).write(&output).unwrap();
+        assert_eq!(fs::read(&mine).unwrap(), content);
+
+        let before = read(&output);
+        let message = model.write(&output).unwrap_err().to_string();
+        assert!(
+            message.contains("m_tangents.texbake.bin: its name is needed while the model is replaced"),
+            "{message}"
+        );
+        assert!(read(&output) == before);
+        assert_eq!(fs::read(&mine).unwrap(), content);
+
+        fs::remove_file(&mine).unwrap();
+        model.write(&output).unwrap();
+        assert_eq!(names(folder.path()), ["m.bin", "m.gltf", "m_tangents.bin"]);
+    }
 }
 
 #[test]
