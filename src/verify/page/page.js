@@ -43,7 +43,8 @@ async function verify() {
         await nextTurn();
     }
 
-    const unnoticed = sabotaged ? [...lines].flatMap(([name, line]) => (line.result() === "differs" ? [] : [name])) : [];
+    const blind = [...lines].filter(([, line]) => sabotaged && line.result() !== "differs");
+    const unnoticed = blind.map(([name]) => name);
     const report = reportOf(notes, gpu, results, unnoticed, performance.now() - started);
     showVerdict(report, lines.size);
     showProblems(report);
@@ -230,8 +231,8 @@ function notRun(recording) {
     return { ...outlineOf(recording), result: "not run", ...NOTHING };
 }
 
-// Of values: `differ` are those with other bits, `differences` those that are beyond the bound, which of `exact` are the
-// same. Checks are marks by which each row proves that this run has written it.
+// Of values: `differ` are those with other bits, `differences` those that are beyond the bound, which of `exact` are
+// the same. Checks are marks by which each row proves that this run has written it.
 const NOTHING = { values: 0, differ: 0, differences: 0, checks: 0, failed_checks: 0 };
 
 function outlineOf({ name, operation, kernel, precision, formats }) {
@@ -342,8 +343,8 @@ function differenceAt(expected, index, code, gotBits, rightBits) {
     };
 }
 
-// The inputs that a differing value was made of, row by row, with the columns and rows where they lie. Beyond the border
-// lies what the edge mode takes there; null where the recording does not have it.
+// The inputs that a differing value was made of, row by row, with the columns and rows where they lie. Beyond the
+// border lies what the edge mode takes there; null where the recording does not have it.
 function inputsAround(recording, { row, column }) {
     const inputs = bytesOf(recording.inputs);
     return recording.given.map(({ name, reach, first_row: firstRow, beside, ...rows }) => {
@@ -453,7 +454,7 @@ function reportOf(notes, gpu, results, unnoticed, milliseconds) {
         seconds: Math.round(milliseconds) / 1000,
         limits: gpu.device ? limitsOf(gpu.device) : {},
         compiled: gpu.compiled ?? [],
-        results: results.map((result) => (wentWrong(result) ? { ...result, command: commandOf(notes, result) } : result)),
+        results: results.map((one) => (wentWrong(one) ? { ...one, command: commandOf(notes, one) } : one)),
     };
 }
 
@@ -534,7 +535,9 @@ class Line {
     show() {
         const { recording, results, planned } = this;
         const { operation, precision, bound } = recording;
+        const hasRun = results.some(({ values }) => values > 0);
         const sum = (of) => results.reduce((total, one) => total + one[of], 0);
+        const total = (of) => (hasRun ? sum(of).toLocaleString("en") : "");
         const errors = merged(results.map((one) => one.errors));
         const count = results.length < planned ? `${results.length} of ${planned}` : planned;
         this.row.dataset.result = this.tone();
@@ -543,12 +546,12 @@ class Line {
                 ["Operation", operation],
                 ["Precision", precision],
                 ["Cases", count, "number"],
-                ["Values", sum("values").toLocaleString("en"), "number"],
-                ["Differ", sum("differ").toLocaleString("en"), "number"],
-                ["Beyond the bound", sum("differences").toLocaleString("en"), "number"],
-                ["Codes", wordsForErrors(errors.codes, bound?.codes)],
-                ["ulp", wordsForErrors(errors.ulps, bound?.ulps)],
-                ["Degrees", wordsForErrors(errors.degrees, bound?.degrees)],
+                ["Values", total("values"), "number"],
+                ["Differ", total("differ"), "number"],
+                ["Beyond the bound", total("differences"), "number"],
+                ["Codes", wordsForErrors(errors.codes, bound?.codes), "errors"],
+                ["ulp", wordsForErrors(errors.ulps, bound?.ulps), "errors"],
+                ["Degrees", wordsForErrors(errors.degrees, bound?.degrees), "errors"],
                 ["Result", this.words(), "result"],
             ]),
         );
@@ -573,7 +576,7 @@ class Line {
         const result = this.result();
         switch (result) {
             case "agrees":
-                return this.sabotaged ? "not noticed" : this.recording.bound ? "within the bounds" : "the same bits";
+                return this.sabotaged ? "not noticed" : this.recording.bound ? "in bounds" : "same bits";
             case "differs":
                 return `differs in ${this.count(result)}${this.sabotaged ? ", as it must" : ""}`;
             case "failed":
@@ -584,13 +587,13 @@ class Line {
     }
 }
 
-// `largest 1, bound 1` above `mean 0.01`; nothing of exact bits that agree.
+// `largest 1`, `mean 0.01` and `bound 1`, one above the other; nothing of exact bits that agree.
 function wordsForErrors({ largest, mean, count }, bound) {
     if (count === 0 || (bound === undefined && largest === 0)) {
         return "";
     }
-    const most = bound === undefined ? "" : `, bound ${exactly(bound)}`;
-    return [`largest ${short(largest)}${most}`, make("br"), `mean ${short(mean)}`];
+    const words = [`largest ${short(largest)}`, `mean ${short(mean)}`];
+    return (bound === undefined ? words : [...words, `bound ${exactly(bound)}`]).map((line) => make("div", {}, line));
 }
 
 // All cases, folded, those that went wrong first.
@@ -609,7 +612,7 @@ function showCases(lines, report) {
     folds.sort((a, b) => rank(a.dataset.result) - rank(b.dataset.result));
     const isWrong = ({ dataset }) => wentWrong(dataset);
     folds.filter(isWrong).forEach((fold) => (fold.open = wrong <= SHOWN_PROBLEMS));
-    element("cases").replaceChildren(...folds);
+    element("cases").replaceChildren(...(report.unusable ? [foldOf(report.cases, folds)] : folds));
 
     const only = element("only-wrong");
     const filter = () => (element("cases").dataset.only = only.checked ? "wrong" : "all");
@@ -617,6 +620,11 @@ function showCases(lines, report) {
     only.addEventListener("change", filter);
     element("filter").hidden = wrong === 0;
     filter();
+}
+
+// What has not run is a list that nobody needs.
+function foldOf(cases, folds) {
+    return make("details", {}, make("summary", {}, `${counted(cases, "case")} not run`), ...folds);
 }
 
 function wordsForCases(line) {
@@ -633,7 +641,8 @@ function casesTable(results, bound) {
     const rows = results.map((one) => {
         const row = make("tr");
         row.dataset.result = one.result;
-        const numbers = [one.values, one.differ, one.differences].map((number) => number.toLocaleString("en"));
+        const counts = one.values > 0 ? [one.values, one.differ, one.differences] : ["", "", ""];
+        const numbers = counts.map((number) => number.toLocaleString("en"));
         const texts = [one.name, one.kernel, ...numbers, wordsForAll(one.errors, bound), one.result];
         row.append(...cells(texts.map((text, place) => [heads[place], text, classes[place]])));
         return row;
@@ -700,6 +709,7 @@ function showKernels(kernels, sabotaged) {
     element("kernels-are").textContent = sabotaged
         ? "The WGSL that was compiled: texbake's, with a constant of each kernel changed on purpose."
         : "The WGSL that was compiled, as it stands in texbake.";
+    element("kernels-count").textContent = counted(kernels.length, "kernel");
     element("kernels").replaceChildren(
         ...kernels.map(({ name, text }) => {
             const details = make("details", {}, make("summary", {}, name));
@@ -793,7 +803,7 @@ function showProblems({ results, sabotage }) {
     }
     const title =
         differing.length === 0 ? "What failed" : failing.length === 0 ? "What differs" : "What failed and what differs";
-    element("problems-title").textContent = title + (sabotage ? ", sabotaged as it is" : "");
+    element("problems-title").textContent = title + (sabotage ? ", as it must" : "");
     element("problems-list").replaceChildren(...cards);
     element("problems").hidden = false;
 }
@@ -900,7 +910,7 @@ function counted(count, noun) {
 
 // Three digits of any magnitude.
 function short(number) {
-    if (number === 0 || !Number.isFinite(number)) {
+    if (!Number.isFinite(number) || (Number.isInteger(number) && number < 1e5)) {
         return String(number);
     }
     return number >= 0.01 && number < 1e5 ? String(Number(number.toPrecision(3))) : number.toExponential(1);
