@@ -6,7 +6,7 @@
 // An invocation computes four neighbouring texels of one row; no texel is written twice, and nothing is atomic.
 //
 // CPU twin: src/ops/bake/reference.rs. Source: FGED2 eq. 7.41 to 7.43, listing 7.5, section 7.7.
-// The arithmetic (fn bake_texel) is one of kernels/bake/*.wgsl.
+// The arithmetic (fn bake_four) is one of kernels/bake/*.wgsl.
 
 struct Params {
     width: u32,          // texels in a row
@@ -26,8 +26,8 @@ struct Params {
     z_over_m: u32,       // Z / M of integer heights up to M, for a parallax map
     kx: u32,             // slope over 2^64 from Gx / 64 of float heights: f32 bits
     ky: u32,
-    centre: i32,         // the stencil: weights of the middle row and of the two others
-    outer: i32,
+    doubt: u32,          // how near to a boundary integers decide, 1: f32 bits (kernels/shared/estimate.wgsl)
+    reserved: u32,
     alpha: u32,          // the fourth code of a normal, if there is one
     normal: Output,
     parallax: Output,
@@ -45,15 +45,18 @@ override NORMAL_IS_FLOAT: bool = false;
 // Bits of the parallax code: 0 (no parallax map), 8, 16 or 32.
 override PARALLAX_BITS: u32 = 0u;
 override PARALLAX_IS_FLOAT: bool = false;
+// The stencil: weights of the middle row and of the two others.
+override CENTRE: i32 = 1;
+override OUTER: i32 = 0;
 // Whether each row is marked as computed.
 override MARKED: bool = true;
 
 const TEXELS: u32 = 4u;  // texels of an invocation
 
-// The codes of a texel.
-struct Texel {
-    normal: vec3<u32>,
-    parallax: u32,
+// The codes of four texels.
+struct Four {
+    normals: Texels,
+    parallaxes: vec4<u32>,
 }
 
 @compute @workgroup_size(64, 1, 1)
@@ -68,22 +71,13 @@ fn bake(@builtin(global_invocation_id) id: vec3<u32>) {
     let middle = heights_at(here, x);
     let south = heights_at(select(here + params.row_words, params.below, row + 1u == params.rows), x);
 
-    // A loop, not four calls: drivers compile the arithmetic once.
-    var normals: Texels;
-    var parallaxes: vec4<u32>;
-    for (var i = 0u; i < TEXELS; i++) {
-        let texel = bake_texel(around(north, i), around(middle, i), around(south, i));
-        normals.x[i] = texel.normal.x;
-        normals.y[i] = texel.normal.y;
-        normals.z[i] = texel.normal.z;
-        parallaxes[i] = texel.parallax;
-    }
+    let four = bake_four(north, middle, south);
     if (NORMAL_CODES > 0u) {
         let at = word_of_four(params.normal, row, id.x, NORMAL_CODES, NORMAL_BITS);
-        store_texels(at, normals, params.alpha, NORMAL_CODES, NORMAL_BITS);
+        store_texels(at, four.normals, params.alpha, NORMAL_CODES, NORMAL_BITS);
     }
     if (PARALLAX_BITS > 0u) {
-        store_one(word_of_four(params.parallax, row, id.x, 1u, PARALLAX_BITS), parallaxes, PARALLAX_BITS);
+        store_one(word_of_four(params.parallax, row, id.x, 1u, PARALLAX_BITS), four.parallaxes, PARALLAX_BITS);
     }
     if (MARKED && x + TEXELS >= params.width) {
         outputs[params.marks + row] = params.nonce;
@@ -109,23 +103,30 @@ fn heights_at(row: u32, x: u32) -> Heights {
     return Heights(vec4(first, here.xyz), here, east);
 }
 
-// West, here, east of one texel in one row.
-fn around(heights: Heights, i: u32) -> vec3<u32> {
-    return vec3(heights.west[i], heights.here[i], heights.east[i]);
+// Gx, Gy of four texels.
+struct Sums {
+    x: vec4<i32>,
+    y: vec4<i32>,
 }
 
-// Gx, Gy of integer heights, each row given as west, here, east.
-fn integer_sums(north: vec3<u32>, middle: vec3<u32>, south: vec3<u32>) -> vec2<i32> {
-    let n = vec3<i32>(north);
-    let m = vec3<i32>(middle);
-    let s = vec3<i32>(south);
-    return vec2(
-        params.outer * ((n.z - n.x) + (s.z - s.x)) + params.centre * (m.z - m.x),
-        params.outer * ((s.x - n.x) + (s.z - n.z)) + params.centre * (s.y - n.y),
+// Of integer heights.
+fn integer_sums(north: Heights, middle: Heights, south: Heights) -> Sums {
+    let x = CENTRE * difference(middle.east, middle.west);
+    let y = CENTRE * difference(south.here, north.here);
+    if (OUTER == 0) {
+        return Sums(x, y);
+    }
+    return Sums(
+        OUTER * (difference(north.east, north.west) + difference(south.east, south.west)) + x,
+        OUTER * (difference(south.west, north.west) + difference(south.east, north.east)) + y,
     );
 }
 
-// 2H - M of an integer height H up to M.
-fn twice_above_middle(height: u32) -> i32 {
-    return 2 * i32(height) - select(255, 65535, HEIGHT_BITS == 16u);
+fn difference(a: vec4<u32>, b: vec4<u32>) -> vec4<i32> {
+    return vec4<i32>(a) - vec4<i32>(b);
+}
+
+// 2H - M of integer heights H up to M.
+fn twice_above_middle(heights: vec4<u32>) -> vec4<i32> {
+    return 2 * vec4<i32>(heights) - select(255, 65535, HEIGHT_BITS == 16u);
 }

@@ -7,8 +7,7 @@
 // An invocation computes four neighbouring texels of one row; no texel is written twice, and nothing is atomic.
 //
 // CPU twin: src/ops/blend/reference.rs. Source: FGED2 eq. 7.46 and 7.47; Hill and Barré-Brisebois, Blending in Detail.
-// The arithmetic (fn blended_codes) is one of kernels/blend/*.wgsl. In each of them, every component of the sum of the
-// normals v1 and v2 is p f v1 + r g v2, where only f and g differ between components.
+// The arithmetic (fn blended_four) is one of kernels/blend/*.wgsl.
 
 struct Params {
     width: u32,          // texels in a row
@@ -18,7 +17,7 @@ struct Params {
     a: i32,              // the weights a/q and b/q where there is no mask
     b: i32,
     q: i32,
-    reserved: u32,
+    doubt: u32,          // how near to a boundary integers decide, 1: f32 bits (kernels/shared/estimate.wgsl)
     base: Input,
     detail: Input,
     mask: Input,
@@ -68,14 +67,7 @@ fn blend(@builtin(global_invocation_id) id: vec3<u32>) {
         mask = four_codes(params.mask, row, id.x, MASK_BITS);
     }
 
-    // A loop, not four calls: drivers compile the arithmetic once.
-    var normals: Texels;
-    for (var i = 0u; i < TEXELS; i++) {
-        let codes = blended_codes(codes_of(base, i), codes_of(detail, i), weights(mask[i]));
-        normals.x[i] = codes.x;
-        normals.y[i] = codes.y;
-        normals.z[i] = codes.z;
-    }
+    let normals = blended_four(base, detail, weights(mask));
     let at = word_of_four(params.normal, row, id.x, NORMAL_CODES, NORMAL_BITS);
     store_texels(at, normals, 0u, NORMAL_CODES, NORMAL_BITS);
     if (MARKED && x + TEXELS >= params.width) {
@@ -84,10 +76,21 @@ fn blend(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 // The numerators a and b of both weights and their denominator q: M - H, H and M of a mask.
-fn weights(transition: u32) -> vec3<i32> {
+struct Weights {
+    a: vec4<i32>,
+    b: vec4<i32>,
+    q: i32,
+}
+
+fn weights(transition: vec4<u32>) -> Weights {
     if (MASK_BITS > 0u) {
         let greatest = params.mask.greatest;
-        return vec3(greatest - i32(transition), i32(transition), greatest);
+        return Weights(greatest - vec4<i32>(transition), vec4<i32>(transition), greatest);
     }
-    return vec3(params.a, params.b, params.q);
+    return Weights(vec4(params.a), vec4(params.b), params.q);
+}
+
+// Of one of four texels: a, b, q.
+fn weights_of(weights: Weights, i: u32) -> vec3<i32> {
+    return vec3(weights.a[i], weights.b[i], weights.q);
 }

@@ -7,13 +7,17 @@
 // An invocation computes four neighbouring texels of one row; no texel is written twice, and nothing is atomic.
 //
 // CPU twin: src/ops/parallax/reference.rs. Source: FGED2 section 7.7: n_z (2h - 1).
-// The arithmetic (fn parallax_code) is one of kernels/parallax/*.wgsl.
+// The arithmetic (fn parallax_four) is one of kernels/parallax/*.wgsl.
 
 struct Params {
     width: u32,          // texels in a row
     rows: u32,           // rows of the band
     marks: u32,          // word offset of the rows' marks
     nonce: u32,          // what marks this dispatch
+    doubt: u32,          // how near to a boundary integers decide, 1: f32 bits (kernels/shared/estimate.wgsl)
+    reserved_1: u32,
+    reserved_2: u32,
+    reserved_3: u32,
     heights: Input,
     normals: Input,
     parallax: Output,
@@ -46,18 +50,14 @@ fn parallax(@builtin(global_invocation_id) id: vec3<u32>) {
     let heights = four_codes(params.heights, row, id.x, HEIGHT_BITS);
     let normals = four_texels(params.normals, row, id.x, NORMAL_CODES, NORMAL_BITS);
 
-    // A loop, not four calls: drivers compile the arithmetic once.
-    var codes: vec4<u32>;
-    for (var i = 0u; i < TEXELS; i++) {
-        codes[i] = parallax_code(heights[i], codes_of(normals, i));
-    }
+    let codes = parallax_four(heights, normals);
     store_one(word_of_four(params.parallax, row, id.x, 1u, PARALLAX_BITS), codes, PARALLAX_BITS);
     if (MARKED && x + TEXELS >= params.width) {
         outputs[params.marks + row] = params.nonce;
     }
 }
 
-// 2H - M of an integer height H up to M.
-fn twice_above_middle(height: u32) -> i32 {
-    return 2 * i32(height) - params.heights.greatest;
+// 2H - M of integer heights H up to M.
+fn twice_above_middle(heights: vec4<u32>) -> vec4<i32> {
+    return 2 * vec4<i32>(heights) - params.heights.greatest;
 }

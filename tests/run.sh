@@ -275,6 +275,8 @@ check "lints" cargo clippy --release --all-targets -- -D warnings
 check "lints without the gpu feature" cargo clippy --release --no-default-features --features cli -- -D warnings
 check "lints of the library alone" cargo clippy --release --lib --no-default-features -- -D warnings
 check_tests "tests" cargo test --release --no-fail-fast
+# A kernel that became dearer on real GPUs, or spills registers, as RADV compiles it for cards that are not there.
+check "kernel costs" cargo bench --bench gpu_cost
 check "dependencies" check_dependencies
 
 if [ $failed -gt 0 ]; then

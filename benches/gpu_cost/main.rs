@@ -14,7 +14,8 @@
 //! spills do.
 //!
 //! **The unit.** RADV's "Inverse Throughput" is 1 / wave64_per_cycle of `collect_preasm_stats` in Mesa's
-//! src/amd/compiler/aco_statistics.cpp (the same from 22.3 to 23.2): cycles of **one SIMD for 64 invocations**. For
+//! src/amd/compiler/aco_statistics.cpp (as read in 23.2; that another version counts so too is what calibration.rs
+//! checks): cycles of **one SIMD for 64 invocations**. For
 //! each resource of a SIMD (vector unit, scalar unit, memory instructions, ...) the cycles of all instructions of a wave
 //! are added up (`get_perf_info`: of a vector instruction 4 on GCN's 16 lanes, 1 on RDNA's 32, which a wave of 64
 //! invocations issues twice; four times as much for 32-bit integer products); the busiest resource decides, unless the
@@ -28,7 +29,8 @@
 //!
 //! **What the unit guesses.** A loop counts as 8 turns (4 inside another, 2 further inside), a side of a branch as 3 / 4
 //! or 1 / 2. All loops of known turns are therefore unrolled by a hint before the cycles are counted, so that nothing is
-//! guessed of them; the other statistics are of the kernel as it is. The loops over a fan's corners stay and count 8
+//! guessed of them; the other statistics are of the kernel as it is. The integers that decide what an estimate leaves
+//! open (kernels/shared/estimate.wgsl) count as often as they run on noise: cost.rs. The loops over a fan's corners stay and count 8
 //! turns, where a closed mesh has 6 corners on average. GFX11's dual issue is not counted by Mesa 22.3.
 //!
 //! **Memory.** Bytes are those that a GPU moves if its caches lose nothing, over the card's bandwidth. Arithmetic as a

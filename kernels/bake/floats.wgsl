@@ -1,5 +1,13 @@
 // Integer heights to maps of which at least one holds floats.
 
+fn estimated_normal(component: Component) -> Codes {
+    return nearest_codes(params.normal, NORMAL_IS_FLOAT, NORMAL_BITS, component);
+}
+
+fn estimated_parallax(component: Component) -> Codes {
+    return nearest_codes(params.parallax, PARALLAX_IS_FLOAT, PARALLAX_BITS, component);
+}
+
 // The code of sqrt(aa / s), or of its negative, in the normal map. `estimate` is nearly sqrt(aa / s).
 fn normal_code(negative: bool, estimate: f32, aa: vec3<u32>, s: vec3<u32>) -> u32 {
     if (NORMAL_IS_FLOAT) {

@@ -1,43 +1,52 @@
 // Any maps in native f32: a code may be its neighbour. The steps are those of floats.wgsl.
 
-fn blended_codes(base: vec3<u32>, detail: vec3<u32>, weights: vec3<i32>) -> vec3<u32> {
-    let v1 = fast_normal(params.base, BASE_CODES, BASE_BITS, base);
-    let v2 = fast_normal(params.detail, DETAIL_CODES, DETAIL_BITS, detail);
-    var sum = fast_sum(v1, v2, vec3<f32>(weights));
-    sum = select(sum, vec3(0.0), abs(sum) < vec3(0x1p-60f));
-    if (all(sum == vec3(0.0))) {
-        sum.z = 1.0;
-    }
-    let normal = sum * inverseSqrt(dot(sum, sum));
-    return vec3(
-        fast_code(params.normal, NORMAL_IS_FLOAT, NORMAL_BITS, normal.x),
-        fast_code(params.normal, NORMAL_IS_FLOAT, NORMAL_BITS, normal.y),
-        fast_code(params.normal, NORMAL_IS_FLOAT, NORMAL_BITS, normal.z),
+fn blended_four(base: Texels, detail: Texels, weights: Weights) -> Texels {
+    let v1 = fast_normals(params.base, BASE_CODES, BASE_BITS, base);
+    let v2 = fast_normals(params.detail, DETAIL_CODES, DETAIL_BITS, detail);
+    let sum = fast_sums(v1, v2, weights);
+    let x = not_smallest(sum.x);
+    let y = not_smallest(sum.y);
+    var z = not_smallest(sum.z);
+    z = select(z, vec4(1.0), (x == vec4(0.0)) & (y == vec4(0.0)) & (z == vec4(0.0)));
+    let scale = inverseSqrt(x * x + y * y + z * z);
+    return Texels(
+        fast_codes(params.normal, NORMAL_IS_FLOAT, NORMAL_BITS, x * scale),
+        fast_codes(params.normal, NORMAL_IS_FLOAT, NORMAL_BITS, y * scale),
+        fast_codes(params.normal, NORMAL_IS_FLOAT, NORMAL_BITS, z * scale),
     );
 }
 
-fn fast_sum(v1: vec3<f32>, v2: vec3<f32>, weights: vec3<f32>) -> vec3<f32> {
+fn not_smallest(sum: vec4<f32>) -> vec4<f32> {
+    return select(sum, vec4(0.0), abs(sum) < vec4(0x1p-60f));
+}
+
+fn fast_sums(v1: Floats, v2: Floats, weights: Weights) -> Floats {
     switch METHOD {
         case WEIGHTED: {
-            let leaning = weights.x * v2.z * v1.xy + weights.y * v1.z * v2.xy;
-            return vec3(leaning, weights.z * v1.z * v2.z);
+            let p = vec4<f32>(weights.a) * v2.z;
+            let r = vec4<f32>(weights.b) * v1.z;
+            return Floats(p * v1.x + r * v2.x, p * v1.y + r * v2.y, f32(weights.q) * v1.z * v2.z);
         }
         case OVERLAY: {
-            return v1 + (1.0 - abs(v1)) * v2;
+            return Floats(
+                v1.x + (1.0 - abs(v1.x)) * v2.x,
+                v1.y + (1.0 - abs(v1.y)) * v2.y,
+                v1.z + (1.0 - abs(v1.z)) * v2.z,
+            );
         }
         case UDN: {
-            return vec3(v1.xy + v2.xy, v1.z);
+            return Floats(v1.x + v2.x, v1.y + v2.y, v1.z);
         }
         case WHITEOUT: {
-            return vec3(v1.xy + v2.xy, v1.z * v2.z);
+            return Floats(v1.x + v2.x, v1.y + v2.y, v1.z * v2.z);
         }
         case RNM: {
             let tz = v1.z + 1.0;
-            let tu = tz * v2.z - dot(v1.xy, v2.xy);
-            return vec3(tu * v1.xy + tz * v2.xy, tz * (tu - v2.z));
+            let tu = tz * v2.z - (v1.x * v2.x + v1.y * v2.y);
+            return Floats(tu * v1.x + tz * v2.x, tu * v1.y + tz * v2.y, tz * (tu - v2.z));
         }
         default: {
-            return v1 + v2;
+            return Floats(v1.x + v2.x, v1.y + v2.y, v1.z + v2.z);
         }
     }
 }

@@ -4,6 +4,20 @@
 
 const SMALLEST_PART: u32 = 0x21800000u;  // 2^-60: parts of the sum below count as zero
 
+fn blended_four(base: Texels, detail: Texels, weights: Weights) -> Texels {
+    let v1 = float_texels(params.base, BASE_CODES, BASE_BITS, base);
+    let v2 = float_texels(params.detail, DETAIL_CODES, DETAIL_BITS, detail);
+    var normals: Texels;
+    for (var i = 0u; i < TEXELS; i++) {
+        let codes = blended_codes(texel_of(v1, i), texel_of(v2, i), weights_of(weights, i));
+        normals.x[i] = codes.x;
+        normals.y[i] = codes.y;
+        normals.z[i] = codes.z;
+    }
+    return normals;
+}
+
+// Every component of the sum is p f v1 + r g v2, where only f and g differ between components.
 fn blended_codes(base: vec3<u32>, detail: vec3<u32>, weights: vec3<i32>) -> vec3<u32> {
     let v1 = float_normal(params.base, BASE_CODES, BASE_BITS, base);
     let v2 = float_normal(params.detail, DETAIL_CODES, DETAIL_BITS, detail);

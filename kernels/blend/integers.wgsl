@@ -3,13 +3,102 @@
 // Normals stand over L1 and L2, and what they become over what makes it an integer: the sum of both is multiplied by
 // L1 L2, or q L1 L2, and so on.
 
+// Whether estimates are near enough: |A| is below 2^31, and codes have 8 bits or S is below 2^49.
+override ESTIMATED: bool = false;
 // What S always fits. 64: codes are integers, and m A, m^2 S and t^2 S fit 32, 64 and 64 bits; 96: |A| < 2^48;
 // 128: |A| < 2^53.
 override S_BITS: u32 = 128u;
 
-fn blended_codes(base: vec3<u32>, detail: vec3<u32>, weights: vec3<i32>) -> vec3<u32> {
-    let v1 = integer_normal(params.base, BASE_CODES, base);
-    let v2 = integer_normal(params.detail, DETAIL_CODES, detail);
+fn blended_four(base: Texels, detail: Texels, weights: Weights) -> Texels {
+    let v1 = integer_normals(params.base, BASE_CODES, base);
+    let v2 = integer_normals(params.detail, DETAIL_CODES, detail);
+    var codes: Texels;
+    var doubtful = vec4(true);
+    if (ESTIMATED) {
+        let estimate = estimated(four_sums(v1, v2, weights));
+        codes = estimate.codes;
+        doubtful = estimate.doubtful;
+    }
+    if (any(doubtful)) {
+        // A loop, not four calls: drivers compile the arithmetic once.
+        for (var i = 0u; i < TEXELS; i++) {
+            if (doubtful[i]) {
+                let exact = exact_codes(integers_of(v1, i), integers_of(v2, i), weights_of(weights, i));
+                codes.x[i] = exact.x;
+                codes.y[i] = exact.y;
+                codes.z[i] = exact.z;
+            }
+        }
+    }
+    return codes;
+}
+
+struct Estimate {
+    codes: Texels,
+    doubtful: vec4<bool>,
+}
+
+// X, Y and Z of four texels that are below 2^31.
+fn four_sums(v1: Integers, v2: Integers, weights: Weights) -> Integers {
+    let l1 = params.base.greatest;
+    let l2 = params.detail.greatest;
+    switch METHOD {
+        case WEIGHTED: {
+            let p = weights.a * v2.z;
+            let r = weights.b * v1.z;
+            return Integers(p * v1.x + r * v2.x, p * v1.y + r * v2.y, weights.q * v1.z * v2.z);
+        }
+        case OVERLAY: {
+            return Integers(
+                l2 * v1.x + (l1 - abs(v1.x)) * v2.x,
+                l2 * v1.y + (l1 - abs(v1.y)) * v2.y,
+                l2 * v1.z + (l1 - abs(v1.z)) * v2.z,
+            );
+        }
+        case UDN: {
+            return Integers(l2 * v1.x + l1 * v2.x, l2 * v1.y + l1 * v2.y, l2 * v1.z);
+        }
+        case WHITEOUT: {
+            return Integers(l2 * v1.x + l1 * v2.x, l2 * v1.y + l1 * v2.y, v1.z * v2.z);
+        }
+        case RNM: {
+            let tz = v1.z + l1;
+            let tu = tz * v2.z - (v1.x * v2.x + v1.y * v2.y);
+            let ltz = l1 * tz;
+            return Integers(tu * v1.x + ltz * v2.x, tu * v1.y + ltz * v2.y, tz * (tu - l1 * v2.z));
+        }
+        default: {
+            return Integers(l2 * v1.x + l1 * v2.x, l2 * v1.y + l1 * v2.y, l2 * v1.z + l1 * v2.z);
+        }
+    }
+}
+
+fn estimated(a: Integers) -> Estimate {
+    let x = vec4<f32>(a.x);
+    let y = vec4<f32>(a.y);
+    let nothing = (a.x == vec4(0)) & (a.y == vec4(0)) & (a.z == vec4(0));
+    let whole_z = select(a.z, vec4(1), nothing);
+    let z = vec4<f32>(whole_z);
+    let s = x * x + y * y + z * z;
+    let scale = inverseSqrt(s);
+    let root = root_of(vec4<u32>(a.x * a.x + a.y * a.y + whole_z * whole_z), s, scale);
+    let codes_x = estimated_normal(Component(x * scale, a.x, scale, root));
+    let codes_y = estimated_normal(Component(y * scale, a.y, scale, root));
+    var result = Estimate(Texels(codes_x.codes, codes_y.codes, vec4(0u)), codes_x.doubtful | codes_y.doubtful);
+    // Of two codes, z is none.
+    if (NORMAL_CODES > 2u) {
+        let codes_z = estimated_normal(Component(z * scale, whole_z, scale, root));
+        result.codes.z = codes_z.codes;
+        result.doubtful = result.doubtful | codes_z.doubtful;
+    }
+    return result;
+}
+
+fn estimated_normal(component: Component) -> Codes {
+    return nearest_codes(params.normal, NORMAL_IS_FLOAT, NORMAL_BITS, component);
+}
+
+fn exact_codes(v1: vec3<i32>, v2: vec3<i32>, weights: vec3<i32>) -> vec3<u32> {
     if (S_BITS == 64u) {
         return narrow_codes(narrow_sum(v1, v2, weights));
     }
@@ -19,6 +108,7 @@ fn blended_codes(base: vec3<u32>, detail: vec3<u32>, weights: vec3<i32>) -> vec3
     return wide_codes(wide_sum(v1, v2, weights));
 }
 
+// Every component of the sum is p f v1 + r g v2, where only f and g differ between components.
 struct Factors {
     p: i32,
     f: vec3<i32>,

@@ -1,12 +1,17 @@
 // The angle of a cosine, in fixed point: the float nearest to the double nearest to it.
 //
-// CPU twin: src/exact/acos.rs, which says how and why. Only the root is taken otherwise here, and is up to 9 units
-// less: the angle is off by less than 8 units of 2^-62. No float's angle is so near to where it would round otherwise:
-// the nearest leaves 39 units.
+// CPU twin: src/exact/acos.rs, which says how and why. Here the root is up to 9 units less, and the series is summed in
+// fewer limbs: its first terms, of which at most 2^-32 is left in the sum, in 32 bits, each step off by 2 units of
+// 2^-31, of which z leaves a quarter to the next; the others without the lowest product, off by 3 units of 2^-63. So P
+// is off by 7 units, and the angle by less than 12 of 2^-62. No float's angle is so near to where it would round
+// otherwise: the nearest leaves 39 units.
 
 const PI_62: vec2<u32> = vec2(0x2168c235u, 0xc90fdaa2u);       // pi in units of 2^-62
 const HALF_PI_62: vec2<u32> = vec2(0x10b4611au, 0x6487ed51u);  // pi/2
 const HALF: u32 = 0x3f000000u;
+
+const TERMS: u32 = 28u;       // of the series
+const LONG_TERMS: u32 = 16u;  // of these, what takes 64 bits
 
 // acos(x), for x from -1 to 1.
 fn angle(cosine: u32) -> u32 {
@@ -25,9 +30,14 @@ fn angle(cosine: u32) -> u32 {
         z = vec2(0u, n << 7u);
     }
     // P(z) in units of 2^-63.
-    var p = vec2(0u);
-    for (var k = 28u; k > 0u; k--) {
-        p = sum64(high64(p, z), SERIES[k - 1u]);
+    // Counted upwards: then drivers know how often.
+    var first = 0u;
+    for (var k = 0u; k < TERMS - LONG_TERMS; k++) {
+        first = product(first, z.y).y + SERIES[TERMS - 1u - k].y;
+    }
+    var p = vec2(0u, first);
+    for (var k = 0u; k < LONG_TERMS; k++) {
+        p = sum64(nearly_high64(p, z), SERIES[LONG_TERMS - 1u - k]);
     }
     let arcsine = high64(w, p);
     // Of acos(|x|), in units of 2^-62.
@@ -91,6 +101,12 @@ fn high64(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
     let carried = sum64(sum64(vec2(low, 0u), vec2(cross1.x, 0u)), vec2(cross2.x, 0u)).y;
     let upper = sum64(product(a.y, b.y), vec2(carried, 0u));
     return sum64(sum64(upper, vec2(cross1.y, 0u)), vec2(cross2.y, 0u));
+}
+
+// The same, or up to 2 less.
+fn nearly_high64(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
+    let crosses = sum64(vec2(product(a.x, b.y).y, 0u), vec2(product(a.y, b.x).y, 0u));
+    return sum64(product(a.y, b.y), crosses);
 }
 
 // a - b.

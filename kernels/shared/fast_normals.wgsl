@@ -1,14 +1,25 @@
-// Normals of any codes in native f32. The steps are those of float_normals.wgsl.
+// Normals of any codes in native f32, four at a time. The steps are those of float_normals.wgsl.
 
-fn fast_normal(input: Input, codes_of_texel: u32, bits: u32, codes: vec3<u32>) -> vec3<f32> {
+struct Floats {
+    x: vec4<f32>,
+    y: vec4<f32>,
+    z: vec4<f32>,
+}
+
+fn fast_normals(input: Input, codes_of_texel: u32, bits: u32, codes: Texels) -> Floats {
     if (bits < 32u) {
-        return vec3<f32>(integer_normal(input, codes_of_texel, codes)) * bitcast<f32>(input.over_greatest);
+        let u = integer_normals(input, codes_of_texel, codes);
+        let over_greatest = bitcast<f32>(input.over_greatest);
+        return Floats(vec4<f32>(u.x) * over_greatest, vec4<f32>(u.y) * over_greatest, vec4<f32>(u.z) * over_greatest);
     }
-    let stored = bitcast<vec3<f32>>(codes);
-    let v = select(stored.xy, vec2(0.0), abs(stored.xy) < vec2(0x1p-25f));
-    let leaning = v * vec2(1.0, f32(input.green));
+    let x = not_tiny(bitcast<vec4<f32>>(codes.x));
+    let y = not_tiny(bitcast<vec4<f32>>(codes.y)) * f32(input.green);
     if (codes_of_texel == 2u) {
-        return vec3(leaning, sqrt(max(1.0 - dot(v, v), 0x1p-48f)));
+        return Floats(x, y, sqrt(max(vec4(1.0) - (x * x + y * y), vec4(0x1p-48f))));
     }
-    return vec3(leaning, max(stored.z, 0x1p-24f));
+    return Floats(x, y, max(bitcast<vec4<f32>>(codes.z), vec4(0x1p-24f)));
+}
+
+fn not_tiny(v: vec4<f32>) -> vec4<f32> {
+    return select(v, vec4(0.0), abs(v) < vec4(0x1p-25f));
 }

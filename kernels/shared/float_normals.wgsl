@@ -4,10 +4,23 @@ const SMALLEST_LEANING: u32 = 0x33000000u;  // 2^-25: x and y below count as zer
 const LEAST_Z: u32 = 0x33800000u;           // 2^-24
 const LEAST_ZZ: u32 = 0x27800000u;          // 2^-48
 
-// The normal of a texel, its z above zero.
+// What is left to do for each of four texels: floats as they are, or integers over L as floats.
+fn float_texels(input: Input, codes_of_texel: u32, bits: u32, codes: Texels) -> Texels {
+    if (bits == 32u) {
+        return codes;
+    }
+    let u = integer_normals(input, codes_of_texel, codes);
+    return Texels(
+        bitcast<vec4<u32>>(vec4<f32>(u.x)),
+        bitcast<vec4<u32>>(vec4<f32>(u.y)),
+        bitcast<vec4<u32>>(vec4<f32>(u.z)),
+    );
+}
+
+// The normal of one of them, its z above zero.
 fn float_normal(input: Input, codes_of_texel: u32, bits: u32, codes: vec3<u32>) -> vec3<u32> {
     if (bits < 32u) {
-        var u = bitcast<vec3<u32>>(vec3<f32>(integer_normal(input, codes_of_texel, codes)));
+        var u = codes;
         for (var axis = 0u; axis < 3u; axis++) {
             u[axis] = mul(u[axis], input.over_greatest);
         }

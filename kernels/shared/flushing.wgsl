@@ -16,8 +16,8 @@ fn rounded(sign: u32, exponent: i32, m: u32) -> u32 {
     let left = i32(countLeadingZeros(m)) - 5;
     let n = select(m << u32(max(left, 0)), (m >> 1u) | (m & 1u), left < 0);
     let e = exponent - left;
-    let up = u32((n & 7u) + ((n >> 3u) & 1u) > 4u);
-    // The leading one counts the exponent up, and so does a carry out of the significand.
-    let magnitude = (u32(e - 1) << 23u) + (n >> 3u) + up;
+    // More than half of the last place rounds up, and so does half of an odd one. The leading one counts the exponent up,
+    // and so does a carry out of the significand.
+    let magnitude = (u32(e - 1) << 23u) + ((n + 3u + ((n >> 3u) & 1u)) >> 3u);
     return sign | select(magnitude, 0u, e < 1);
 }

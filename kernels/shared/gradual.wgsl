@@ -22,7 +22,7 @@ fn rounded(sign: u32, exponent: i32, m: u32) -> u32 {
     let normal = select(m << u32(max(left, 0)), (m >> 1u) | (m & 1u), left < 0);
     let e = exponent - left;
     let n = shifted_sticky(normal, max(1 - e, 0));
-    let up = u32((n & 7u) + ((n >> 3u) & 1u) > 4u);
-    // A leading one counts the exponent up, and so does a carry out of the significand.
-    return sign | ((u32(max(e, 1) - 1) << 23u) + (n >> 3u) + up);
+    // More than half of the last place rounds up, and so does half of an odd one. A leading one counts the exponent up,
+    // and so does a carry out of the significand.
+    return sign | ((u32(max(e, 1) - 1) << 23u) + ((n + 3u + ((n >> 3u) & 1u)) >> 3u));
 }

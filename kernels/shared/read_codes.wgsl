@@ -75,36 +75,50 @@ fn four_words(at: u32) -> vec4<u32> {
     return vec4(inputs[at], inputs[at + 1u], inputs[at + 2u], inputs[at + 3u]);
 }
 
-// The codes of one of four texels.
-fn codes_of(texels: Texels, i: u32) -> vec3<u32> {
+// One of four texels.
+fn texel_of(texels: Texels, i: u32) -> vec3<u32> {
     return vec3(texels.x[i], texels.y[i], texels.z[i]);
 }
 
-// The normal over L of a texel of integer codes, its z above zero.
-fn integer_normal(input: Input, codes_of_texel: u32, codes: vec3<u32>) -> vec3<i32> {
-    let component = vec3<i32>(codes ^ vec3(input.flip)) * input.factor - input.centre;
-    let u = max(component, vec3(-input.greatest));
-    // The code that zero is written as reads as zero.
-    let v = select(u, vec3(0), (u == vec3(1)) & vec3(input.factor == 2));
-    let y = v.y * input.green;
+// The normals of four texels over L, by component.
+struct Integers {
+    x: vec4<i32>,
+    y: vec4<i32>,
+    z: vec4<i32>,
+}
+
+fn integers_of(normals: Integers, i: u32) -> vec3<i32> {
+    return vec3(normals.x[i], normals.y[i], normals.z[i]);
+}
+
+// The normals of integer codes, each z above zero.
+fn integer_normals(input: Input, codes_of_texel: u32, codes: Texels) -> Integers {
+    let x = integer_components(input, codes.x);
+    let y = integer_components(input, codes.y);
+    let turned = select(y, -y, vec4(input.green < 0));
     if (codes_of_texel == 2u) {
-        return vec3(v.x, y, rebuilt_z(input.greatest, v.xy));
+        return Integers(x, turned, rebuilt_z(input.greatest, x, y));
     }
-    return vec3(v.x, y, max(v.z, 1));
+    return Integers(x, turned, max(integer_components(input, codes.z), vec4(1)));
+}
+
+// A shift: the factor is 1 or 2.
+fn integer_components(input: Input, codes: vec4<u32>) -> vec4<i32> {
+    let component = vec4<i32>((codes ^ vec4(input.flip)) << vec4(u32(input.factor - 1))) - input.centre;
+    let u = max(component, vec4(-input.greatest));
+    // The code that zero is written as reads as zero.
+    return select(u, vec4(0), (u == vec4(1)) & vec4(input.factor == 2));
 }
 
 // floor(sqrt(L^2 - x^2 - y^2)), at least 1 (FGED2 eq. 7.44).
-fn rebuilt_z(greatest: i32, v: vec2<i32>) -> i32 {
-    let squares = vec2<u32>(v * v);
-    let above = u32(greatest) * u32(greatest) - squares.x;
-    let rest = max(above - min(squares.y, above), 1u);
+fn rebuilt_z(greatest: i32, x: vec4<i32>, y: vec4<i32>) -> vec4<i32> {
+    let xx = vec4<u32>(x * x);
+    let above = u32(greatest) * u32(greatest) - xx;
+    let rest = max(above - min(vec4<u32>(y * y), above), vec4(1u));
     // The native root of a number below 2^32 is off by less than one.
-    var root = u32(sqrt(f32(rest)));
-    if (root * root > rest) {
-        root -= 1u;
-    }
-    if (rest - root * root > 2u * root) {
-        root += 1u;
-    }
-    return i32(root);
+    let root = vec4<u32>(sqrt(vec4<f32>(rest)));
+    let over = select(vec4(0u), vec4(1u), root * root > rest);
+    let under = select(vec4(0u), vec4(1u), rest - root * root > 2u * root);
+    // Where the root is over, the difference wraps around, and more so does not mean that it is under.
+    return vec4<i32>(root - over + under * (1u - over));
 }

@@ -38,10 +38,7 @@ fn add(a: u32, b: u32) -> u32 {
     let mx = significand_of(x) << 3u;
     let my = shifted_sticky(significand_of(y) << 3u, exponent_of(x) - exponent_of(y));
     let m = select(mx + my, mx - my, subtract);
-    if (m == 0u) {
-        return select(x & SIGN, 0u, subtract);
-    }
-    return rounded(x & SIGN, exponent_of(x), m);
+    return select(rounded(x & SIGN, exponent_of(x), m), select(x & SIGN, 0u, subtract), m == 0u);
 }
 
 fn sub(a: u32, b: u32) -> u32 {
@@ -50,13 +47,19 @@ fn sub(a: u32, b: u32) -> u32 {
 
 fn mul(a: u32, b: u32) -> u32 {
     let sign = (a ^ b) & SIGN;
-    // 47 or 48 bits, of which 27 or 28 are kept and the others only noticed.
-    let p = product(significand_of(a), significand_of(b));
-    let m = (p.y << 12u) | (p.x >> 20u) | u32((p.x & 0xfffffu) != 0u);
-    if (m == 0u) {
-        return sign;
-    }
-    return rounded(sign, exponent_of(a) + exponent_of(b) - 127, m);
+    let ma = significand_of(a);
+    let mb = significand_of(b);
+    // 47 or 48 bits, of which 27 or 28 are kept and the others only noticed. Factors of 12 bits have a product that a
+    // GPU computes fast.
+    let a0 = ma & 0xfffu;
+    let a1 = ma >> 12u;
+    let b0 = mb & 0xfffu;
+    let b1 = mb >> 12u;
+    let low = a0 * b0;
+    let middle = a1 * b0 + a0 * b1 + (low >> 12u);
+    let m = ((a1 * b1) << 4u) + (middle >> 8u);
+    let rest = (low & 0xfffu) | (middle & 0xffu);
+    return select(rounded(sign, exponent_of(a) + exponent_of(b) - 127, m | u32(rest != 0u)), sign, m == 0u);
 }
 
 // The square root of a normal number above zero.

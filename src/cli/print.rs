@@ -10,7 +10,7 @@ use texbake::batch::{
     BlendJob, BlendOutcome, FileResult, Job, ModelTangents, Outcome, ParallaxNumbers, TangentJob, Totals,
     describe_codes,
 };
-use texbake::verify::{Agreement, Bound, Comparison, Errors};
+use texbake::verify::{Agreement, Comparison, Errors};
 use texbake::{Baked, Baker, Device, Error, HeightType, NormalFormat, Ran, Scale, Size};
 
 /// Longer folders get a table of what was not baked, and of the slowest.
@@ -313,43 +313,40 @@ pub fn device_table(devices: &[Device]) -> String {
     table.trim_fmt()
 }
 
-/// How each operation of a device agrees with the specification.
+/// How each operation of a device agrees with the specification; then the errors of `fast`, beside their bounds.
 pub fn comparison_table(comparisons: &[Comparison]) -> String {
-    let errors = ["codes: largest, mean, bound", "ulp", "degrees"];
-    let header = [&["operation", "precision", "cases", "values", "differ"], &errors[..], &["result"]].concat();
-    let mut table = plain_table(&header, &[2, 3, 4]);
+    let mut table = plain_table(&["operation", "cases", "values", "differ", "result"], &[1, 2, 3]);
+    let mut errors = plain_table(&["errors of fast: largest, mean, bound", "codes", "ulp", "degrees"], &[]);
     for comparison in comparisons {
         let Agreement { values, differing, codes, ulps, degrees, .. } = comparison.agreement;
-        let cell = |errors: Errors, bound: fn(&Bound) -> f64| match comparison.bound.filter(|_| errors.count > 0) {
-            Some(of) => format!("{}, {}, {}", short(errors.largest), short(errors.mean), short(bound(&of))),
-            None => String::new(),
+        let result = match (comparison.failed_cases, comparison.bound) {
+            (0, _) if !comparison.passed() => "FAILED: nothing was compared".to_owned(),
+            (0, None) => "same bits".to_owned(),
+            (0, Some(_)) => "in bounds".to_owned(),
+            (failed, _) => format!("FAILED in {failed}"),
         };
-        let result = match comparison.failed_cases {
-            0 if !comparison.passed() => "FAILED: nothing was compared".to_owned(),
-            0 if comparison.bound.is_some() => "within the bounds".to_owned(),
-            0 => "the same bits".to_owned(),
-            failed => format!("FAILED in {failed}"),
-        };
-        table.add_row([
-            comparison.operation.to_owned(),
-            comparison.precision.clone(),
-            comparison.cases.to_string(),
-            values.to_string(),
-            differing.to_string(),
-            cell(codes, |bound| bound.codes),
-            cell(ulps, |bound| bound.ulps),
-            cell(degrees, |bound| bound.degrees),
-            result,
-        ]);
+        let name = format!("{}, {}", comparison.operation, comparison.precision);
+        table.add_row([name, comparison.cases.to_string(), values.to_string(), differing.to_string(), result]);
+        if let Some(bound) = comparison.bound {
+            let cell = |errors: Errors, bound: f64| match errors.count {
+                0 => String::new(),
+                _ => format!("{}, {}, {}", short(errors.largest), short(errors.mean), short(bound)),
+            };
+            let name = comparison.operation.to_owned();
+            let cells = [cell(codes, bound.codes), cell(ulps, bound.ulps), cell(degrees, bound.degrees)];
+            errors.add_row([&[name][..], &cells].concat());
+        }
     }
-    table.trim_fmt()
+    if errors.is_empty() { table.trim_fmt() } else { format!("{}\n{}", table.trim_fmt(), errors.trim_fmt()) }
 }
 
-/// A number with two digits that tell something.
+/// A number with three digits that tell something, and all of those before the point.
 fn short(number: f64) -> String {
     match number {
         0.0 => "0".into(),
-        0.01..1000.0 => format!("{:.2}", number).trim_end_matches('0').trim_end_matches('.').into(),
+        0.01..1.0 => format!("{number:.3}").trim_end_matches('0').into(),
+        1.0..100.0 => format!("{number:.1}").trim_end_matches(".0").into(),
+        100.0..1e9 => format!("{number:.0}"),
         _ => format!("{number:.1e}"),
     }
 }

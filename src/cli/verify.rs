@@ -5,7 +5,7 @@ use super::interruptible;
 use super::print::{comparison_table, put, say};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use texbake::batch::JsonFile;
 use texbake::stream::Monitor;
 #[cfg(feature = "gpu")]
@@ -23,13 +23,20 @@ code on the CPU. Codes of the specification, in turn, are judged by the
 formulas in whole numbers of any size. In exact precision every bit must
 agree. In fast precision the errors are measured, in codes, in units in the
 last place of 1 (ulp: 2^-23 of 32f, 2^-10 of 16f), and in degrees, and must
-stay within the documented bounds.
+stay within the bounds that the table and the README give.
 
 Of a difference the smallest input that shows it is searched and printed, with
 its bits, what each says of it, and the command that repeats it.
 
-With --sabotage a constant of each kernel is changed first: then every
-comparison must fail, or verify would prove nothing.
+With --sabotage a constant of each kernel is changed first: every row of the
+table must then fail, or verify would prove nothing. Not every case of a row
+shows every constant.
+
+The words of --only are parts of a case's name, as the bar shows it: normal
+map, parallax map, both in one pass, parallax map of given normals, blend,
+tangents of mikktspace, lengyel or hegde; exact, fast; u8, u16, f32; unorm 8
+xyz gl and so on; central, sobel, scharr, prewitt; wrap, clamp, mirror,
+wrap/clamp; random, small, extreme, boundaries; hills, mirrored, soup.
 
 The page of --html runs the same kernels by the WebGPU of the browser that
 opens it, and compares them with answers that it contains. It has as many of
@@ -41,10 +48,11 @@ Examples:
   texbake verify --only \"normal map, exact, u16\"
   texbake verify --html verify.html
 
-Exit status: 0 all agree, 1 something differs or could not be verified,
-2 wrong arguments, 130 interrupted.")]
+Exit status: 0 all agree or, sabotaged, every comparison fails; 1 something
+differs, could not be verified, or did not notice the sabotage; 2 wrong
+arguments, 130 interrupted.")]
 pub struct VerifyArguments {
-    /// Only this adapter: its description contains NAME, as in `texbake devices`; vulkan:NAME names the API too
+    /// Only adapters whose description contains NAME, as in `texbake devices`; vulkan:NAME names the API too
     #[arg(long, value_name = "NAME", conflicts_with = "backend")]
     pub adapter: Option<String>,
 
@@ -61,7 +69,7 @@ pub struct VerifyArguments {
     #[arg(long, value_name = "NUMBER", default_value_t = Options::default().seed)]
     pub seed: u64,
 
-    /// Only cases that have all these words, with commas between them; a|b is either
+    /// Only cases that have all these words, with commas between them; a|b is either, see below
     #[arg(long, value_name = "WORDS")]
     pub only: Option<String>,
 
@@ -69,11 +77,12 @@ pub struct VerifyArguments {
     #[arg(long)]
     pub sabotage: bool,
 
-    /// Write what was found as JSON
+    /// Write what was found as JSON; missing folders are made
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
 
-    /// Write a page that runs the same kernels by the WebGPU of any browser that opens it; nothing is verified here
+    /// Write a page that runs the same kernels by the WebGPU of any browser that opens it; nothing is verified here. Missing
+    /// folders are made
     #[cfg(feature = "gpu")]
     #[arg(long, value_name = "FILE", conflicts_with_all = ["adapter", "backend", "json"])]
     pub html: Option<PathBuf>,
@@ -108,7 +117,11 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Failure> {
                 report.devices.push(device);
             }
             Err(Error::Cancelled) => {
-                say("interrupted: what is above was verified");
+                say(match report.devices.len() {
+                    0 => "interrupted before a device was verified".to_owned(),
+                    1 => "interrupted: one device was verified".to_owned(),
+                    devices => format!("interrupted: {devices} devices were verified"),
+                });
                 report.interrupted = true;
                 break;
             }
@@ -124,7 +137,8 @@ pub fn verify(arguments: &VerifyArguments) -> Result<Exit, Failure> {
     if !arguments.quiet {
         put(summary(&report));
     }
-    Ok(if report.passed() { Exit::Success } else { Exit::Failed })
+    let is_well = if report.sabotaged { report.is_noticed() } else { report.passed() };
+    Ok(if is_well { Exit::Success } else { Exit::Failed })
 }
 
 impl VerifyArguments {
@@ -134,7 +148,7 @@ impl VerifyArguments {
 }
 
 #[cfg(feature = "gpu")]
-fn write_page(path: &Path, arguments: &VerifyArguments, monitor: &Monitor) -> Result<Exit, Failure> {
+fn write_page(path: &std::path::Path, arguments: &VerifyArguments, monitor: &Monitor) -> Result<Exit, Failure> {
     let bar = bar(arguments.quiet);
     let watch = &mut |progress: Progress<'_>| advance(&bar, "page", progress);
     let page = match Page::new(&arguments.options(), arguments.sabotage, monitor, watch) {
@@ -166,47 +180,44 @@ fn advance(bar: &ProgressBar, name: &str, progress: Progress<'_>) {
     bar.set_message(format!("{name}: {}", progress.case));
 }
 
-/// What the arguments mean; an adapter that does not open is a finding, unless it was named.
+/// What the arguments mean; an adapter that does not open is a finding.
 fn subjects(arguments: &VerifyArguments) -> Result<Vec<Result<Subject>>, Failure> {
-    if let Some(name) = &arguments.adapter {
-        return Ok(vec![Ok(adapter(name)?)]);
-    }
+    let (named, backend) = (arguments.adapter.as_deref(), arguments.backend);
     let mut subjects = Vec::new();
-    if arguments.backend != Some(Backend::Gpu) {
+    if named.is_none() && backend != Some(Backend::Gpu) {
         subjects.push(Ok(Subject::cpu()));
     }
-    if arguments.backend != Some(Backend::Cpu) {
-        let adapters = adapters();
-        let has_none = adapters.is_empty();
-        subjects.extend(adapters);
-        // What was not verified is no success.
-        subjects.extend(has_none.then(|| {
-            let reason = "this machine has no adapter that runs compute kernels; --backend cpu verifies the CPU alone";
-            Err(Error::Device { adapter: "gpu".into(), reason: reason.into() })
-        }));
+    if backend != Some(Backend::Cpu) {
+        let adapters = adapters(named);
+        match (named, adapters.is_empty()) {
+            // Which says what there is.
+            (Some(_), true) => return Err(Failure::from(no_adapter(named))),
+            // What was not verified is no success.
+            (None, true) => subjects.push(Err(no_adapter(named))),
+            _ => subjects.extend(adapters),
+        }
     }
     Ok(subjects)
 }
 
 #[cfg(feature = "gpu")]
-fn adapter(name: &str) -> Result<Subject> {
-    Subject::adapter(Some(name))
-}
-
-#[cfg(feature = "gpu")]
-fn adapters() -> Vec<Result<Subject>> {
-    Subject::adapters()
+fn adapters(named: Option<&str>) -> Vec<Result<Subject>> {
+    Subject::adapters(named)
 }
 
 #[cfg(not(feature = "gpu"))]
-fn adapter(name: &str) -> Result<Subject> {
-    let (adapter, reason) = (name.into(), "this build has no gpu feature; use --backend cpu".into());
-    Err(Error::Device { adapter, reason })
-}
-
-#[cfg(not(feature = "gpu"))]
-fn adapters() -> Vec<Result<Subject>> {
+fn adapters(_: Option<&str>) -> Vec<Result<Subject>> {
     Vec::new()
+}
+
+/// Why there is no adapter, and which there are.
+fn no_adapter(named: Option<&str>) -> Error {
+    let reason =
+        || "this machine has no adapter that runs compute kernels; --backend cpu verifies the CPU alone".into();
+    match (named, texbake::Baker::gpu(named)) {
+        (Some(_), Err(error)) => error,
+        _ => Error::Device { adapter: "gpu".into(), reason: reason() },
+    }
 }
 
 /// Verifies a device while a bar moves.
@@ -224,6 +235,9 @@ fn examine(
     };
     let bar = bar(arguments.quiet);
     let name = subject.name();
+    if bar.is_hidden() && !arguments.quiet {
+        say(format_args!("verifying {name}"));
+    }
     let report = subject.verify(options, monitor, &mut |progress| advance(&bar, &name, progress));
     bar.finish_and_clear();
     report
@@ -256,7 +270,7 @@ fn show_mismatch(mismatch: &Mismatch) {
         Some(OracleAnswer { component, .. }) => format!("the component is {component}"),
     };
     for (who, says) in [
-        ("the device says", stored(mismatch.device)),
+        ("this device says", stored(mismatch.device)),
         ("the CPU", stored(mismatch.cpu)),
         ("the specification", stored(mismatch.specification)),
         ("the formula", oracle),
@@ -267,13 +281,13 @@ fn show_mismatch(mismatch: &Mismatch) {
 }
 
 fn summary(report: &Report) -> String {
-    let failed = report.devices.iter().filter(|device| !device.passed()).count();
-    let devices = report.devices.len();
-    let found = match (failed, devices) {
-        (0, 1) => "the device agrees in everything".to_owned(),
-        (0, _) => format!("all {devices} devices agree in everything"),
-        _ => format!("{failed} of {devices} FAILED"),
+    let (failed, devices) = (report.devices.iter().filter(|device| !device.passed()).count(), report.devices.len());
+    let found = match (report.sabotaged, report.is_noticed()) {
+        (true, true) => "sabotaged on purpose, and every comparison has noticed it".to_owned(),
+        (true, false) => "sabotaged on purpose, and NOT every comparison has noticed it".to_owned(),
+        _ if failed > 0 => format!("{failed} of {devices} FAILED"),
+        _ if devices == 1 => format!("it agrees in all {} cases", report.cases()),
+        _ => format!("all {devices} agree, in {} cases", report.cases()),
     };
-    let sabotage = if report.sabotaged { ", sabotaged" } else { "" };
-    format!("texbake {}, seed {}{sabotage}: {found}", report.version, report.seed)
+    format!("texbake {}, seed {}: {found}", report.version, report.seed)
 }

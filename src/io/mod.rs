@@ -37,7 +37,7 @@ pub use format::{INPUT_EXTENSIONS, default_format, default_parallax_format};
 pub use gltf::{LeftOut, Model, ModelFile, ModelFiles, ModelReadOptions, ModelReport, Primitive};
 pub use raw::{RawKind, RawLayout};
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::map::{
     Channels, Convention, Encoding, HeightMap, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Size, TexelFormat,
 };
@@ -47,7 +47,6 @@ use format::{FileFormat, OutputFormat};
 use input::Found;
 use normal::NormalRows;
 use samples::Opened;
-use std::io::Write;
 use std::path::Path;
 
 /// How a file becomes a height map.
@@ -124,18 +123,6 @@ impl Default for NormalReadOptions {
     fn default() -> Self {
         Self { encoding: None, channels: None, convention: Convention::Gl, max_bytes: MAX_BYTES }
     }
-}
-
-/// Writes a whole file, which appears under its name when it is complete; its folders are made.
-///
-/// # Errors
-/// [`Error::File`] if there is something else than a file under its name; [`Error::Io`].
-#[cfg(feature = "gpu")]
-pub(crate) fn replace_file(path: &Path, content: &[u8]) -> Result<()> {
-    std::fs::create_dir_all(path.parent().unwrap_or(Path::new(""))).map_err(Error::io(path))?;
-    let file = replace::Replacement::create(path)?;
-    file.output()?.write_all(content).map_err(Error::io(path))?;
-    file.commit()
 }
 
 /// Opens a height map file: PNG, TIFF, EXR, TGA, BMP, JPEG, WebP, or headerless rows of [`ReadOptions::raw`].

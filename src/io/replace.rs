@@ -179,6 +179,7 @@ impl Seek for Output {
 ///
 /// # Errors
 /// [`Error::File`] for a pipe that nobody reads; it is not waited for. [`Error::Io`].
+#[cfg(feature = "cli")]
 pub(crate) fn open_stream(path: &Path) -> Result<File> {
     let mut options = File::options();
     options.write(true);
@@ -203,4 +204,15 @@ pub(crate) fn open_stream(path: &Path) -> Result<File> {
 fn system_reason(error: &io::Error) -> String {
     let reason = error.to_string();
     reason.split(" at path ").next().unwrap_or(&reason).into()
+}
+/// Writes a whole file, which appears under its name when it is complete; its folders are made.
+///
+/// # Errors
+/// [`Error::File`] if there is something else than a file under its name; [`Error::Io`].
+#[cfg(feature = "gpu")]
+pub(crate) fn replace_file(path: &Path, content: &[u8]) -> Result<()> {
+    std::fs::create_dir_all(path.parent().unwrap_or(Path::new(""))).map_err(Error::io(path))?;
+    let file = Replacement::create(path)?;
+    file.output()?.write_all(content).map_err(Error::io(path))?;
+    file.commit()
 }

@@ -123,7 +123,7 @@ fn compare_map(expected: &Answer, got: &Answer, bound: Option<&Bound>, agreement
             let error = error_of(expected, got, index);
             errors.add(error);
             // NaN is beyond any bound.
-            if most.is_none_or(|most| !(error <= most)) {
+            if most.is_none_or(|most| error.is_nan() || error > most) {
                 first = first.or(Some(index));
             }
         }
@@ -183,6 +183,7 @@ mod tests {
     use super::super::answer::Meaning;
     use super::*;
     use crate::map::{Codes, Encoding, TexelFormat};
+    use std::slice;
 
     fn floats(components: &[f32]) -> Answer {
         let format = TexelFormat { encoding: Encoding::Float, depth: Depth::Float32, channels: 3 };
@@ -198,7 +199,7 @@ mod tests {
     #[test]
     fn the_same_codes_agree() {
         let map = snorm(&[0, 0, 127, 90, 0, 90]);
-        let (agreement, first) = compare(&[map.clone()], &[map], None);
+        let (agreement, first) = compare(slice::from_ref(&map), slice::from_ref(&map), None);
         assert_eq!((agreement.values, agreement.differing, first), (6, 0, None));
         assert_eq!((agreement.codes.count, agreement.degrees.count), (6, 0));
     }
@@ -207,7 +208,7 @@ mod tests {
     fn directions_are_measured_in_degrees() {
         let (expected, got) = (floats(&[0.0, 0.0, 1.0, 1.0, 0.0, 0.0]), floats(&[0.0, 0.0, 1.0, 1.0, 1e-4, 0.0]));
         let bound = |degrees| Bound { codes: 0.0, ulps: 1e9, degrees };
-        let compare = |degrees| compare(&[expected.clone()], &[got.clone()], Some(&bound(degrees)));
+        let compare = |degrees| compare(slice::from_ref(&expected), slice::from_ref(&got), Some(&bound(degrees)));
         let (agreement, first) = compare(1e-2);
         assert!((agreement.degrees.largest - 1e-4f64.to_degrees()).abs() < 1e-7, "{agreement:?}");
         assert_eq!((agreement.degrees.count, first), (2, None));

@@ -65,7 +65,7 @@ impl Page {
     /// [`Error::File`](crate::Error::File) if there is something else than a file under its name;
     /// [`Error::Io`](crate::Error::Io).
     pub fn write(&self, path: impl AsRef<std::path::Path>) -> Result<()> {
-        crate::io::replace_file(path.as_ref(), self.html.as_bytes())
+        crate::io::replace::replace_file(path.as_ref(), self.html.as_bytes())
     }
 
     /// Cases that it runs.

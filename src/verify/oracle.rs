@@ -234,7 +234,7 @@ fn of_float(value: f32) -> BigInt {
     let bits = value.to_bits();
     let exponent = bits >> 23 & 0xff;
     let mantissa = BigInt::from(bits & 0x7f_ffff | u32::from(exponent > 0) << 23);
-    let magnitude = mantissa << exponent.max(1) - 1;
+    let magnitude = mantissa << (exponent.max(1) - 1);
     if bits >> 31 == 1 { -magnitude } else { magnitude }
 }
 

@@ -98,6 +98,20 @@ impl Report {
         Self { version: env!("CARGO_PKG_VERSION"), seed, full, interrupted: false, sabotaged, devices: Vec::new() }
     }
 
+    /// Whether every comparison of every device found something: what must be if it was sabotaged.
+    pub fn is_noticed(&self) -> bool {
+        let is_noticed = |device: &DeviceReport| {
+            let all_failed = device.comparisons.iter().all(|comparison| comparison.failed_cases > 0);
+            device.failure.is_none() && !device.comparisons.is_empty() && all_failed
+        };
+        !self.interrupted && !self.devices.is_empty() && self.devices.iter().all(is_noticed)
+    }
+
+    /// Cases that ran, on all devices.
+    pub fn cases(&self) -> u64 {
+        self.devices.iter().flat_map(|device| &device.comparisons).map(|comparison| comparison.cases).sum()
+    }
+
     /// Whether there is a device, every device has passed, and none is missing.
     pub fn passed(&self) -> bool {
         !self.interrupted && !self.devices.is_empty() && self.devices.iter().all(DeviceReport::passed)

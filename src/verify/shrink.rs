@@ -65,8 +65,10 @@ fn weight(value: f32) -> u32 {
 mod tests {
     use super::*;
 
+    type List = Vec<u32>;
+
     /// A list without one of its numbers, or with one simpler number.
-    fn smaller(list: &Vec<u32>, _: &(), mut try_: Try<'_, Vec<u32>>) -> ControlFlow<()> {
+    fn smaller(list: &List, _: &(), mut try_: Try<'_, List>) -> ControlFlow<()> {
         (0..list.len()).map(|index| [&list[..index], &list[index + 1..]].concat()).try_for_each(&mut try_)?;
         (0..list.len())
             .flat_map(|index| simpler_integers(list[index]).map(move |value| (index, value)))
@@ -76,7 +78,7 @@ mod tests {
 
     #[test]
     fn the_smallest_failing_list_is_found() {
-        let fails = |list: &Vec<u32>| list.iter().any(|&value| value > 100).then_some(());
+        let fails = |list: &List| list.iter().any(|&value| value > 100).then_some(());
         assert_eq!(shrink((vec![3, 70_000, 12, 900], ()), smaller, fails).0, [101]);
     }
 

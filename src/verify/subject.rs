@@ -47,19 +47,36 @@ impl Options {
     /// # Errors
     /// [`Error::Parameter`] if there is none.
     pub(crate) fn cases(&self) -> Result<Vec<Case>> {
-        let mut cases = cases(if self.full { Extent::Full } else { Extent::Quick });
-        if let Some(only) = &self.only {
-            let wanted: Vec<&str> = only.split(',').map(str::trim).collect();
-            let has =
-                |name: &str, word: &str| word.split('|').any(|word| name.split(", ").any(|part| part == word.trim()));
-            cases.retain(|case| wanted.iter().all(|word| has(&case.name, word)));
-            if cases.is_empty() {
-                let range = "words of a case's name with commas between them, as normal map, exact, u16, wrap";
-                return Err(Error::parameter("only", only, range));
-            }
+        let cases = cases(if self.full { Extent::Full } else { Extent::Quick });
+        match &self.only {
+            None => Ok(cases),
+            Some(only) => cases_with(only, cases),
         }
-        Ok(cases)
     }
+}
+
+/// The cases that have all of some words. A word is a part of a case's name between commas, or some whole words of one;
+/// where the first finds cases, the second is not looked for.
+fn cases_with(only: &str, cases: Vec<Case>) -> Result<Vec<Case>> {
+    let only = only.to_lowercase();
+    let wanted: Vec<Vec<&str>> = only.split(',').map(|word| word.split('|').map(str::trim).collect()).collect();
+    let is_part = |name: &str, word: &str| name.split(", ").any(|part| part == word);
+    let is_in_part =
+        |name: &str, word: &str| name.split(", ").any(|part| format!(" {part} ").contains(&format!(" {word} ")));
+    for matches in [&is_part as &dyn Fn(&str, &str) -> bool, &is_in_part] {
+        let has = |case: &Case, either: &Vec<&str>| either.iter().any(|word| matches(&case.name, word));
+        if cases.iter().any(|case| wanted.iter().all(|either| has(case, either))) {
+            return Ok(cases.into_iter().filter(|case| wanted.iter().all(|either| has(case, either))).collect());
+        }
+    }
+    let is_known = |word: &&str| cases.iter().any(|case| is_in_part(&case.name, word));
+    let unknown: Vec<&str> = wanted.concat().into_iter().filter(|word| !is_known(word)).collect();
+    let example = "such as normal map, exact, u16, wrap, random";
+    let range = match unknown[..] {
+        [] => format!("words that some case has together, {example}"),
+        _ => format!("words of a case's name with commas between them, {example}; no case has {}", unknown.join(", ")),
+    };
+    Err(Error::parameter("only", only, range))
 }
 
 /// How far verification of a device has come.
@@ -105,10 +122,10 @@ impl Subject {
         Ok(Self::on(Untested::open(selector)?))
     }
 
-    /// Every adapter of this machine, or why it does not open.
+    /// Every adapter that `selector` means, or every one of this machine, or why it does not open.
     #[cfg(feature = "gpu")]
-    pub fn adapters() -> Vec<Result<Self>> {
-        Untested::all().into_iter().map(|gpu| Ok(Self::on(gpu?))).collect()
+    pub fn adapters(selector: Option<&str>) -> Vec<Result<Self>> {
+        Untested::all(selector).into_iter().map(|gpu| Ok(Self::on(gpu?))).collect()
     }
 
     /// A device that a program has opened for itself.

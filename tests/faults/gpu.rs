@@ -2,7 +2,7 @@
 
 use crate::cli::support::{Folder, Run, bumps8, bumps16};
 use crate::cli::tangents::{Model, sheet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use texbake::NormalOptions;
 
 /// Mesa's RADV without a Radeon: it is listed as a real GPU, and every device on it opens as lost.
@@ -20,7 +20,7 @@ fn radv() -> Option<PathBuf> {
 }
 
 /// Runs the program where every GPU opens as lost.
-fn run_on_lost(folder: &Folder, arguments: &[&str], radv: &PathBuf) -> Run {
+fn run_on_lost(folder: &Folder, arguments: &[&str], radv: &Path) -> Run {
     let mut command = folder.command(arguments);
     command.env(LOST.0, LOST.1).env("VK_DRIVER_FILES", radv).env("VK_ICD_FILENAMES", radv);
     command.output().unwrap().into()
@@ -28,7 +28,7 @@ fn run_on_lost(folder: &Folder, arguments: &[&str], radv: &PathBuf) -> Run {
 
 /// Fails unless a command ends with the loss when it must run on the GPU, and with the CPU's own files when it may not.
 /// `out` is the folder that it writes to.
-fn assert_lost(folder: &Folder, arguments: &[&str], radv: &PathBuf) {
+fn assert_lost(folder: &Folder, arguments: &[&str], radv: &Path) {
     let with = |out: &'static str, backend: &[&'static str]| -> Run {
         let arguments: Vec<String> = arguments.iter().map(|argument| argument.replace("OUT", out)).collect();
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).chain(backend.iter().copied()).collect();

@@ -34,6 +34,18 @@ fn random_heights() {
 }
 
 #[test]
+fn normals_that_nearly_point_up_as_floats() {
+    // z is next to 1, where floats are twice as dense below as above.
+    let mut random = Random::new(0x6e_471e);
+    let map = map_u16(97, 41, |_, _| 30_000 + random.below(300) as u16);
+    for format in [FLOAT16, FLOAT32] {
+        for scale in ["24", "0.35", "-1"] {
+            assert_right(&map, &options(scale, format));
+        }
+    }
+}
+
+#[test]
 fn the_steepest_and_the_flattest_slopes() {
     // Scharr with the greatest parts: X reaches 2^24 2^21, Z 2^24 2^5 2^16; products come to 123 bits.
     let stripes = map_u16(64, 64, |x, y| match (x / 2 + y / 2) % 4 {

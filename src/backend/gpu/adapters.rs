@@ -23,6 +23,13 @@ fn of(backends: Backends) -> Vec<Adapter> {
     adapters
 }
 
+/// All adapters that a selector means, or all.
+pub(super) fn meant(selector: Option<&str>) -> Vec<Adapter> {
+    let mut adapters = all();
+    adapters.retain(|adapter| selector.is_none_or(|selector| is_meant(&adapter.get_info(), selector)));
+    adapters
+}
+
 /// The first adapter that a selector means: a part of its description, after `api:` if it names one.
 ///
 /// # Errors

@@ -2,7 +2,7 @@
 
 use super::device::Device;
 use super::kernel::{BAKE_FAST, BAKE_FLOAT_HEIGHTS, BAKE_FLOATS, BAKE_INTEGERS, Kernel};
-use super::operation::{Layer, Operation, Places, row_bytes};
+use super::operation::{Doubt, Layer, Operation, Places, row_bytes};
 use super::output::{Output, bits};
 use super::transfer::Transfer;
 use crate::error::Result;
@@ -34,8 +34,8 @@ pub(super) struct Params {
     pub z_over_m: u32,
     pub kx: u32,
     pub ky: u32,
-    pub centre: i32,
-    pub outer: i32,
+    pub doubt: u32,
+    pub reserved: u32,
     pub alpha: u32,
     pub normal: Output,
     pub parallax: Output,
@@ -68,10 +68,11 @@ impl Operation for BakePlan {
 pub(super) fn run(
     device: &Device,
     plan: &BakePlan,
+    doubt: Doubt,
     bands: &mut dyn HeightBands,
     sinks: &mut [&mut dyn CodeSink],
 ) -> Result<()> {
-    let mut transfer = Transfer::new(device, plan)?;
+    let mut transfer = Transfer::new(device, plan, doubt)?;
     while let Some(band) = bands.next()? {
         transfer.send(band.rows(), |rows| layers(&band.part(rows.start, rows.len())), sinks)?;
     }
@@ -108,8 +109,13 @@ pub(super) fn kernel(plan: &BakePlan, normal_codes: usize, marked: bool) -> Kern
         ("NORMAL_IS_FLOAT", normal_depth.is_float().into()),
         ("PARALLAX_BITS", parallax_depth.map_or(0, bits)),
         ("PARALLAX_IS_FLOAT", parallax_depth.is_some_and(Depth::is_float).into()),
+        ("CENTRE", plan.stencil.centre as u32),
+        ("OUTER", plan.stencil.outer as u32),
         ("MARKED", marked.into()),
     ];
+    if source != BAKE_FAST {
+        constants.push(("ESTIMATED", can_be_estimated(plan).into()));
+    }
     if [BAKE_INTEGERS, BAKE_FLOATS].contains(&source) {
         constants.push(("NARROW", fits_64_bits(plan).into()));
     }
@@ -136,8 +142,7 @@ pub(super) fn params(plan: &BakePlan, places: &Places) -> Params {
         east_of_last: plan.edges.x.resolve(width as isize, width) as u32,
         marks: places.marks,
         nonce: places.nonce,
-        centre: plan.stencil.centre,
-        outer: plan.stencil.outer,
+        doubt: places.doubt.factor().to_bits(),
         alpha: plan.normal.map_or(0, |format| code_of_one(format.texel())),
         normal: output(plan.normal.map(|format| format.texel())),
         parallax: output(plan.parallax.map(|format| format.texel())),
@@ -167,13 +172,27 @@ fn code_of_one(format: TexelFormat) -> u32 {
     }
 }
 
+/// Whether kernels/shared/estimate.wgsl does for all codes: of 8 bits, or of a short S. Differences of float heights that
+/// a stencil adds up can cancel.
+fn can_be_estimated(plan: &BakePlan) -> bool {
+    let has_bytes = plan.outputs().all(|format| format.depth == Depth::Bits8);
+    match plan.slope {
+        Slope::Integer(_) => has_bytes || greatest_s(plan).is_some_and(|s| s < 1 << 49),
+        Slope::Float(_) => has_bytes && plan.stencil.outer == 0,
+    }
+}
+
+/// The greatest S = X^2 + Y^2 + Z^2; floats have none.
+fn greatest_s(plan: &BakePlan) -> Option<u128> {
+    let Slope::Integer(IntegerSlope { px, py, z }) = plan.slope else { return None };
+    let greatest_sum = u128::from(plan.height_type.greatest_code()?) * (plan.stencil.divisor() as u128 / 2);
+    let squares = [px, py].map(|p| (u128::from(p.unsigned_abs()) * greatest_sum).pow(2));
+    Some(squares[0] + squares[1] + (z as u128).pow(2))
+}
+
 /// Whether all codes are integers, and m A, m^2 S and all that a comparison multiplies stay within 32 and 64 bits.
 fn fits_64_bits(plan: &BakePlan) -> bool {
-    let Slope::Integer(IntegerSlope { px, py, z }) = plan.slope else { return false };
-    let greatest_height = plan.height_type.greatest_code().unwrap_or(0);
-    let greatest_sum = u128::from(greatest_height) * (plan.stencil.divisor() as u128 / 2);
-    let squares = [px, py].map(|p| (u128::from(p.unsigned_abs()) * greatest_sum).pow(2));
-    let s = squares[0] + squares[1] + (z as u128).pow(2);
+    let Some(s) = greatest_s(plan) else { return false };
     let fits =
         |rounding: CodeRounding| s.checked_mul((rounding.m as u128).pow(2)).is_some_and(|product| product < 1 << 64);
     plan.outputs().all(|format| CodeRounding::new(format).is_some_and(fits))

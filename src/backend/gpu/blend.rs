@@ -9,7 +9,7 @@ use crate::backend::Backend;
 use crate::backend::cpu::Reference;
 use crate::error::Result;
 use crate::exact::CodeRounding;
-use crate::map::{Size, TexelFormat};
+use crate::map::{Depth, Size, TexelFormat};
 use crate::ops::Precision;
 use crate::ops::blend::{BlendMethod, BlendPlan};
 use crate::stream::{CodeSink, LayerBands};
@@ -26,7 +26,7 @@ pub(super) struct Params {
     pub a: i32,
     pub b: i32,
     pub q: i32,
-    pub reserved: u32,
+    pub doubt: u32,
     pub base: Input,
     pub detail: Input,
     pub mask: Input,
@@ -54,6 +54,7 @@ impl Operation for BlendPlan {
             ("MARKED", 1),
         ];
         if source == BLEND_INTEGERS {
+            constants.push(("ESTIMATED", can_be_estimated(self).into()));
             constants.push(("S_BITS", s_bits(self)));
         }
         Kernel { source, constants }
@@ -81,7 +82,7 @@ impl Operation for BlendPlan {
             a: self.weights.base,
             b: self.weights.detail,
             q: self.weights.q as i32,
-            reserved: 0,
+            doubt: places.doubt.factor().to_bits(),
             base: Input::normals(&self.layers[0], places.inputs[0]),
             detail: Input::normals(&self.layers[1], places.inputs[1]),
             mask: Input::heights(self.mask.map(|mask| mask.greatest), mask_rows),
@@ -121,6 +122,14 @@ fn number(method: BlendMethod) -> u32 {
         BlendMethod::Whiteout => 4,
         BlendMethod::Rnm => 5,
     }
+}
+
+/// `ESTIMATED` of kernels/blend/integers.wgsl: whether floats and 32 bits do for every texel.
+fn can_be_estimated(plan: &BlendPlan) -> bool {
+    let Some(scales) = plan.integer_scales() else { return false };
+    let [leaning, z] = plan.greatest_parts(scales);
+    let is_short = 2 * leaning.pow(2) + z.pow(2) < 1 << 49;
+    leaning.max(z) < 1 << 31 && (plan.format.depth == Depth::Bits8 || is_short)
 }
 
 /// `S_BITS` of kernels/blend/integers.wgsl: the fewest that are enough for every texel.

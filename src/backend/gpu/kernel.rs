@@ -33,6 +33,7 @@ const INTEGER_HEIGHTS: &str = include_str!("../../../kernels/bake/integer_height
 const INTEGERS: &str = include_str!("../../../kernels/bake/integers.wgsl");
 const FLOATS: &str = include_str!("../../../kernels/bake/floats.wgsl");
 const FLOAT_HEIGHTS: &str = include_str!("../../../kernels/bake/float_heights.wgsl");
+const NATIVE_NORMALS: &str = include_str!("../../../kernels/bake/native_normals.wgsl");
 const FAST: &str = include_str!("../../../kernels/bake/fast.wgsl");
 const BLEND: &str = include_str!("../../../kernels/blend.wgsl");
 const BLENDED_INTEGERS: &str = include_str!("../../../kernels/blend/integers.wgsl");
@@ -68,27 +69,54 @@ const NATIVE_FLOAT: &str = include_str!("../../../kernels/shared/native_float.wg
 const ACOS: &str = include_str!("../../../kernels/shared/acos.wgsl");
 const UNIT: &str = include_str!("../../../kernels/shared/unit.wgsl");
 const FLOAT_PARALLAX: &str = include_str!("../../../kernels/shared/float_parallax.wgsl");
+const ESTIMATE_FLOATS: &str = include_str!("../../../kernels/shared/estimate_floats.wgsl");
+const ESTIMATE: &str = include_str!("../../../kernels/shared/estimate.wgsl");
 const FAST_CODE: &str = include_str!("../../../kernels/shared/fast_code.wgsl");
 
 pub(crate) const BAKE_INTEGERS: KernelSource = KernelSource {
     name: "bake, integer heights to integer codes",
     entry_point: "bake",
-    files: &[BAKE, INTEGER_HEIGHTS, INTEGERS, HEIGHTS, CODES, NEAREST_CODE, WIDE],
+    files: &[BAKE, INTEGER_HEIGHTS, INTEGERS, HEIGHTS, CODES, ESTIMATE, NEAREST_CODE, WIDE],
 };
 pub(crate) const BAKE_FLOATS: KernelSource = KernelSource {
     name: "bake, integer heights to floats",
     entry_point: "bake",
-    files: &[BAKE, INTEGER_HEIGHTS, FLOATS, HEIGHTS, CODES, NEAREST_CODE, NEAREST_FLOAT, WIDE, SOFT_FLOAT, FLUSHING],
+    files: &[
+        BAKE,
+        INTEGER_HEIGHTS,
+        FLOATS,
+        HEIGHTS,
+        CODES,
+        ESTIMATE,
+        ESTIMATE_FLOATS,
+        NEAREST_CODE,
+        NEAREST_FLOAT,
+        WIDE,
+        SOFT_FLOAT,
+        FLUSHING,
+    ],
 };
 pub(crate) const BAKE_FLOAT_HEIGHTS: KernelSource = KernelSource {
     name: "bake, float heights",
     entry_point: "bake",
-    files: &[BAKE, FLOAT_HEIGHTS, HEIGHTS, CODES, UNIT, FLOAT_PARALLAX, WIDE, SOFT_FLOAT, FLUSHING],
+    files: &[
+        BAKE,
+        FLOAT_HEIGHTS,
+        NATIVE_NORMALS,
+        HEIGHTS,
+        CODES,
+        ESTIMATE,
+        UNIT,
+        FLOAT_PARALLAX,
+        WIDE,
+        SOFT_FLOAT,
+        FLUSHING,
+    ],
 };
 pub(crate) const BAKE_FAST: KernelSource = KernelSource {
     name: "bake, fast",
     entry_point: "bake",
-    files: &[BAKE, FAST, HEIGHTS, CODES, FAST_CODE, WIDE, SOFT_FLOAT, FLUSHING],
+    files: &[BAKE, FAST, NATIVE_NORMALS, HEIGHTS, CODES, FAST_CODE, WIDE, SOFT_FLOAT, FLUSHING],
 };
 pub(crate) const BLEND_INTEGERS: KernelSource = KernelSource {
     name: "blend, integer maps",
@@ -98,6 +126,8 @@ pub(crate) const BLEND_INTEGERS: KernelSource = KernelSource {
         BLENDED_INTEGERS,
         READ_CODES,
         CODES,
+        ESTIMATE,
+        ESTIMATE_FLOATS,
         NEAREST_CODE,
         NEAREST_FLOAT,
         SIGNED,
@@ -119,7 +149,19 @@ pub(crate) const BLEND_FAST: KernelSource = KernelSource {
 pub(crate) const PARALLAX_INTEGERS: KernelSource = KernelSource {
     name: "parallax, integer maps",
     entry_point: "parallax",
-    files: &[PARALLAX, INTEGER_MAPS, READ_CODES, CODES, NEAREST_CODE, NEAREST_FLOAT, WIDE, SOFT_FLOAT, FLUSHING],
+    files: &[
+        PARALLAX,
+        INTEGER_MAPS,
+        READ_CODES,
+        CODES,
+        ESTIMATE,
+        ESTIMATE_FLOATS,
+        NEAREST_CODE,
+        NEAREST_FLOAT,
+        WIDE,
+        SOFT_FLOAT,
+        FLUSHING,
+    ],
 };
 pub(crate) const PARALLAX_FLOATS: KernelSource = KernelSource {
     name: "parallax, float maps",

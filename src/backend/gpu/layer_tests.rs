@@ -153,15 +153,19 @@ fn a_blend_that_computes_wrong_bytes_is_refused_before_its_first_job() {
     let dx = NormalFormat { convention: Convention::Dx, ..FLOAT16 };
     for (plan, from, to) in [
         // How codes are read.
-        (add([UNORM8, UNORM8, UNORM16]), "(u == vec3(1))", "(u == vec3(3))"),
-        (add([SNORM8; 3]), "vec3(-input.greatest)", "vec3(-input.greatest - 1)"),
+        (add([UNORM8, UNORM8, UNORM16]), "(u == vec4(1))", "(u == vec4(3))"),
+        (add([SNORM8; 3]), "vec4(-input.greatest)", "vec4(-input.greatest - 1)"),
         (add([UNORM16; 3]), "a.z, a.w >> 16u", "a.w, a.w >> 16u"),
-        (add([xy(UNORM16); 3]), "- squares.x", ""),
+        (add([xy(UNORM16); 3]), "- xx;", "- 0u * xx;"),
         (add([xy(UNORM8), UNORM8, xy(UNORM16)]), "words >> vec4(8u)", "words >> vec4(16u)"),
         (add([dx, FLOAT32, UNORM8]), "let turned = y ^ select(0u, SIGN, input.green < 0)", "let turned = y"),
         (add([FLOAT16; 3]), "at_least(LEAST_Z, codes.z)", "codes.z"),
         (add([xy(FLOAT32); 3]), "at_least(LEAST_ZZ, zz)", "zz & ~SIGN"),
-        (masked([SNORM8; 3], HeightType::U8), "greatest - i32(transition)", "greatest - i32(transition >> 1u)"),
+        (
+            masked([SNORM8; 3], HeightType::U8),
+            "greatest - vec4<i32>(transition)",
+            "greatest - vec4<i32>(transition >> vec4(1u))",
+        ),
         (masked([UNORM16; 3], HeightType::U16), "(words >> vec4(0u, 16u, 0u, 16u))", "words"),
         // The sum.
         (add([UNORM8; 3]), "+ by.r * by.g * v2", "- by.r * by.g * v2"),
@@ -173,6 +177,12 @@ fn a_blend_that_computes_wrong_bytes_is_refused_before_its_first_job() {
         (blend(BlendMethod::Rnm, [UNORM16; 3], None), "negated(leaning)", "leaning"),
         (blend(BlendMethod::Overlay, [FLOAT32; 3], None), "sub(ONE, v1[axis] & ~SIGN)", "sub(ONE, v1[axis])"),
         (blend(BlendMethod::Rnm, [FLOAT32; 3], None), "sub(tu, v2.z)", "tu"),
+        // The same in floats.
+        (add([UNORM8; 3]), "p * v1.y + r * v2.y", "p * v1.y - r * v2.y"),
+        (blend(BlendMethod::Rnm, [UNORM8; 3], None), "ltz * v2.x", "tz * v2.x"),
+        (blend(BlendMethod::Overlay, [UNORM8; 3], None), "(l1 - abs(v1.y)) * v2.y", "(l1 - v1.y) * v2.y"),
+        (add([UNORM8; 3]), "(output.code_offset - 128)", "(output.code_offset - 127)"),
+        (add([UNORM8, UNORM8, UNORM16]), "excess >= vec4(0.0)", "excess < vec4(0.0)"),
         // The rounding.
         (add([UNORM8; 3]), "let ma = u32(output.code_m) * a", "let ma = u32(output.code_m + 1) * a"),
         (add([UNORM16; 3]), "times96(aa, u32(output.code_m)", "times96(aa, u32(output.code_m + 1)"),

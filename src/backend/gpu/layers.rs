@@ -2,7 +2,7 @@
 
 use super::device::Device;
 use super::input::input_bits;
-use super::operation::{Layer, Operation, row_bytes};
+use super::operation::{Doubt, Layer, Operation, row_bytes};
 use super::self_test::{By, HEIGHT, WIDTH, scrambled, test};
 use super::transfer::Transfer;
 use crate::error::Result;
@@ -37,10 +37,11 @@ pub(super) fn input_row_bytes(operation: &impl LayerOperation) -> Vec<usize> {
 pub(super) fn run(
     device: &Device,
     operation: &impl LayerOperation,
+    doubt: Doubt,
     bands: &mut dyn LayerBands,
     sinks: &mut [&mut dyn CodeSink],
 ) -> Result<()> {
-    let mut transfer = Transfer::new(device, operation)?;
+    let mut transfer = Transfer::new(device, operation, doubt)?;
     while let Some(band) = bands.next()? {
         transfer.send(band.rows, |rows| layers(&band, rows), sinks)?;
     }
@@ -71,7 +72,7 @@ pub(super) fn compare(device: &Device, operation: &impl LayerOperation, size: Si
     let bands = || MapLayers::new(maps.iter().map(Codes::as_ref).collect(), size.height(), band_rows);
     let inputs = formats.iter().map(|format| format!("{} codes of {} bits", format.encoding, format.depth));
     test(device, &operation, size, &inputs.collect::<Vec<_>>().join(" and "), |by| match by {
-        By::Device(sinks) => run(device, &operation, &mut bands(), sinks),
+        By::Device(doubt, sinks) => run(device, &operation, doubt, &mut bands(), sinks),
         By::Reference(sinks) => operation.reference(&mut bands(), sinks[0]),
     })
 }

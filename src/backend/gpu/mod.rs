@@ -46,7 +46,7 @@ use crate::stream::{CodeSink, HeightBands, LayerBands};
 use device::Device;
 pub use hosted::{CodeTarget, HeightSource, Hosted, NormalBake};
 use layers::LayerOperation;
-use operation::{Operation, greatest_row_bytes, row_groups};
+use operation::{Doubt, Operation, greatest_row_bytes, row_groups};
 pub use own_kernel::Binding;
 pub(crate) use own_kernel::OwnPipeline;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -76,9 +76,9 @@ impl Untested {
         Self::open_adapter(&adapters::select(selector)?)
     }
 
-    /// Every adapter of this machine, the best first, or why it does not open.
-    pub fn all() -> Vec<Result<Self>> {
-        adapters::all().iter().map(Self::open_adapter).collect()
+    /// Every adapter that `selector` means, or every one, the best first, or why it does not open.
+    pub fn all(selector: Option<&str>) -> Vec<Result<Self>> {
+        adapters::meant(selector).iter().map(Self::open_adapter).collect()
     }
 
     /// Compiles a kernel of somebody else's.
@@ -139,7 +139,7 @@ impl Untested {
         sink: &mut dyn CodeSink,
     ) -> Result<()> {
         self.check_width(plan)?;
-        layers::run(&self.device, plan, bands, &mut [sink])
+        layers::run(&self.device, plan, Doubt::Near, bands, &mut [sink])
     }
 }
 
@@ -158,7 +158,7 @@ impl Backend for Untested {
 
     fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
         self.check_width(plan)?;
-        bake::run(&self.device, plan, bands, sinks)
+        bake::run(&self.device, plan, Doubt::Near, bands, sinks)
     }
 
     fn blend(&self, plan: &BlendPlan, bands: &mut dyn LayerBands, sink: &mut dyn CodeSink) -> Result<()> {

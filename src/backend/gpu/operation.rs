@@ -63,6 +63,28 @@ pub(super) struct Places {
     pub marks: u32,
     /// What marks a row of this dispatch.
     pub nonce: u32,
+    /// Which codes integers decide.
+    pub doubt: Doubt,
+}
+
+/// Where a kernel's integers decide a code that its floats have estimated (kernels/shared/estimate.wgsl).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) enum Doubt {
+    /// Near a boundary, where the estimate could be wrong.
+    #[default]
+    Near,
+    /// Wherever the estimate is not exact: a test of the integers, which have little to do otherwise.
+    Everywhere,
+}
+
+impl Doubt {
+    /// By what the least distance to a boundary is multiplied.
+    pub fn factor(self) -> f32 {
+        match self {
+            Self::Near => 1.0,
+            Self::Everywhere => 1e30,
+        }
+    }
 }
 
 /// Bytes of a row of `width` texels of `texel_bytes`, padded to what an invocation computes: whole words.

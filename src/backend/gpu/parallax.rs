@@ -9,7 +9,7 @@ use crate::backend::Backend;
 use crate::backend::cpu::Reference;
 use crate::error::Result;
 use crate::exact::CodeRounding;
-use crate::map::{Size, TexelFormat};
+use crate::map::{Depth, Size, TexelFormat};
 use crate::ops::Precision;
 use crate::ops::parallax::ParallaxPlan;
 use crate::stream::{CodeSink, LayerBands};
@@ -23,6 +23,10 @@ pub(super) struct Params {
     pub rows: u32,
     pub marks: u32,
     pub nonce: u32,
+    pub doubt: u32,
+    pub reserved_1: u32,
+    pub reserved_2: u32,
+    pub reserved_3: u32,
     pub heights: Input,
     pub normals: Input,
     pub parallax: Output,
@@ -45,6 +49,7 @@ impl Operation for ParallaxPlan {
             ("MARKED", 1),
         ];
         if source == PARALLAX_INTEGERS {
+            constants.push(("ESTIMATED", can_be_estimated(self).into()));
             constants.push(("NARROW", fits_64_bits(self).into()));
         }
         Kernel { source, constants }
@@ -68,9 +73,11 @@ impl Operation for ParallaxPlan {
             rows: places.rows,
             marks: places.marks,
             nonce: places.nonce,
+            doubt: places.doubt.factor().to_bits(),
             heights: Input::heights(self.height_type.greatest_code(), places.inputs[0]),
             normals: Input::normals(&self.normals, places.inputs[1]),
             parallax: Output::new(self.format.texel(), places.outputs[0]),
+            ..Params::default()
         };
         bytemuck::bytes_of(&params).to_vec()
     }
@@ -95,13 +102,20 @@ impl LayerOperation for ParallaxPlan {
     }
 }
 
+/// Whether kernels/shared/estimate.wgsl does: for a code of 8 bits, or any of a short S.
+fn can_be_estimated(plan: &ParallaxPlan) -> bool {
+    plan.format.depth == Depth::Bits8 || greatest_s(plan).is_some_and(|s| s < 1 << 49)
+}
+
+/// The greatest S = M^2 (x^2 + y^2 + z^2); floats have none.
+fn greatest_s(plan: &ParallaxPlan) -> Option<u128> {
+    let [m, l] = [plan.height_type.greatest_code()?, plan.normals.codes?.greatest as u32];
+    Some(3 * u128::from(m).pow(2) * u128::from(l).pow(2))
+}
+
 /// Whether the code is an integer, and m A, m^2 S and all that a comparison multiplies stay within 32 and 64 bits.
 fn fits_64_bits(plan: &ParallaxPlan) -> bool {
     let rounding = CodeRounding::new(plan.format.texel());
-    let (Some(m), Some(l), Some(rounding)) = (plan.height_type.greatest_code(), plan.normals.codes, rounding) else {
-        return false;
-    };
-    let square = |number: u32| u128::from(number).pow(2);
-    let s = square(m) * 3 * square(l.greatest as u32);
-    s * square(rounding.m as u32) < 1 << 64
+    let (Some(s), Some(rounding)) = (greatest_s(plan), rounding) else { return false };
+    s * (rounding.m as u128).pow(2) < 1 << 64
 }

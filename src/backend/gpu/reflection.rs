@@ -67,16 +67,18 @@ fn host_params(entry_point: &str) -> (Vec<Word>, usize) {
         "bake" => (
             words! {
                 bake::Params: width rows above body below row_words west_of_first east_of_last marks nonce
-                    px py z_low z_high z_over_m kx ky centre outer alpha normal parallax
+                    px py z_low z_high z_over_m kx ky doubt reserved alpha normal parallax
             },
             size_of::<bake::Params>(),
         ),
         "blend" => (
-            words! { blend::Params: width rows marks nonce a b q reserved base detail mask normal },
+            words! { blend::Params: width rows marks nonce a b q doubt base detail mask normal },
             size_of::<blend::Params>(),
         ),
         "parallax" => (
-            words! { parallax::Params: width rows marks nonce heights normals parallax },
+            words! {
+                parallax::Params: width rows marks nonce doubt reserved_1 reserved_2 reserved_3 heights normals parallax
+            },
             size_of::<parallax::Params>(),
         ),
         "frames" | "tangents" => (
@@ -267,7 +269,7 @@ fn a_device_that_computes_wrong_bytes_fails_its_self_test() {
         (BAKE_INTEGERS, "let ma = u32(output.code_m) * a", "let ma = u32(output.code_m + 1) * a"),
         (BAKE_INTEGERS, "times96(aa, u32(output.code_m)", "times96(aa, u32(output.code_m + 1)"),
         (BAKE_FLOATS, "let inexact = u32(", "let inexact = 0u * u32("),
-        (BAKE_FLOAT_HEIGHTS, "((n >> 3u) & 1u) > 4u", "((n >> 3u) & 1u) > 5u"),
+        (BAKE_FLOAT_HEIGHTS, "(n + 3u +", "(n + 4u +"),
     ] {
         let text = source.text();
         assert!(text.contains(from), "{}: no {from:?}", source.name);
@@ -286,6 +288,9 @@ fn a_kernel_that_computes_wrong_bytes_is_refused_before_its_first_job() {
     };
     let exact = |heights, normal, parallax| plan(heights, normal, parallax, Precision::Exact);
     for (plan, from, to) in [
+        (exact(HeightType::U8, UNORM8, None), "(output.code_offset - 128)", "(output.code_offset - 127)"),
+        (exact(HeightType::U16, SNORM16, None), "let rest = vec4<f32>(t) * root.rest", "let rest = vec4<f32>(t) * 0.0"),
+        (exact(HeightType::U16, SNORM16, None), "whole_x, scale, root)", "whole_y, scale, root)"),
         (exact(HeightType::U8, UNORM8, UNORM8), "let a = params.z_over_m * ", "let a = 1u + params.z_over_m * "),
         (exact(HeightType::U16, None, SNORM16), "product(params.z_over_m, ", "product(params.z_over_m + 1u, "),
         (
@@ -294,7 +299,11 @@ fn a_kernel_that_computes_wrong_bytes_is_refused_before_its_first_job() {
             "nearest_float(PARALLAX_BITS, !negative",
         ),
         (exact(HeightType::U16, UNORM8, SNORM16), "nearest_code96(params.parallax, ", "nearest_code96(params.normal, "),
-        (exact(HeightType::U8, UNORM8, SNORM16), "1u, PARALLAX_BITS), parallaxes", "1u, NORMAL_BITS), parallaxes"),
+        (
+            exact(HeightType::U8, UNORM8, SNORM16),
+            "1u, PARALLAX_BITS), four.parallaxes",
+            "1u, NORMAL_BITS), four.parallaxes",
+        ),
         (exact(HeightType::F32, UNORM8, UNORM8), "min(height, ONE)", "height"),
         (exact(HeightType::F32, None, HALF), "(height & SIGN) != 0u", "false"),
     ] {

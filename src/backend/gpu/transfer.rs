@@ -2,7 +2,7 @@
 
 use super::device::{Device, Fault};
 use super::kernel::Kernel;
-use super::operation::{Layer, Operation, Places, Rows, greatest_row_bytes, output_row_bytes, row_groups};
+use super::operation::{Doubt, Layer, Operation, Places, Rows, greatest_row_bytes, output_row_bytes, row_groups};
 use super::pace::{Submission, Work};
 use super::slot::Slot;
 use crate::backend::fill_rows;
@@ -35,6 +35,7 @@ pub(super) struct Mapping {
 pub(super) struct Transfer<'a, O> {
     device: &'a Device,
     operation: &'a O,
+    doubt: Doubt,
     kernel: Kernel,
     pipeline: ComputePipeline,
     input_row_bytes: Vec<usize>,
@@ -46,13 +47,14 @@ pub(super) struct Transfer<'a, O> {
 
 impl<'a, O: Operation> Transfer<'a, O> {
     /// Prepares the kernel.
-    pub fn new(device: &'a Device, operation: &'a O) -> Result<Self> {
+    pub fn new(device: &'a Device, operation: &'a O, doubt: Doubt) -> Result<Self> {
         let kernel = operation.kernel();
         let pipeline = device.guarded(|| Ok(device.pipeline(&kernel)))?;
         let most_rows = device.greatest_binding() / greatest_row_bytes(operation);
         Ok(Self {
             device,
             operation,
+            doubt,
             kernel,
             pipeline,
             input_row_bytes: operation.inputs(),
@@ -122,6 +124,7 @@ impl<'a, O: Operation> Transfer<'a, O> {
         let device = self.device;
         let row_bytes = [self.input_row_bytes.as_slice(), &self.output_row_bytes];
         let (places, input_words) = placed(row_bytes, rows, layers, device.fresh_nonce());
+        let places = Places { doubt: self.doubt, ..places };
         let input_bytes = 4 * u64::from(input_words);
         let output_bytes = 4 * (u64::from(places.marks) + rows as u64);
         let slot = device.slot(input_bytes, output_bytes)?;
@@ -240,7 +243,7 @@ pub(super) fn placed(
 ) -> (Places, u32) {
     let (inputs, input_words) = stacked(layers.iter().map(|layer| layer.rows).zip(input_row_bytes));
     let (outputs, marks) = stacked(output_row_bytes.iter().map(|row_bytes| (rows, row_bytes)));
-    (Places { rows: rows as u32, inputs, outputs, marks, nonce }, input_words)
+    (Places { rows: rows as u32, inputs, outputs, marks, nonce, ..Places::default() }, input_words)
 }
 
 /// Maps of so many rows of so many bytes one after the other, and the word after the last.

@@ -156,7 +156,7 @@ pub(super) fn normals(kind: Kind, format: NormalFormat, size: Size, chance: &mut
             Kind::Small => direction(chance.of(&[0.0, 0.5, -0.5]), chance.of(&[0.0, 1.0, -0.25])),
             Kind::Random | Kind::Boundaries => direction(1.2 * chance.unit(), 1.2 * chance.unit()),
         };
-        for channel in 0..channels {
+        for (channel, &component) in components.iter().take(channels).enumerate() {
             let at = index * channels + channel;
             let any_code = kind == Kind::Extreme;
             let stored = |component: f32, chance: &mut Chance| match CodeRounding::new(texel) {
@@ -165,10 +165,10 @@ pub(super) fn normals(kind: Kind, format: NormalFormat, size: Size, chance: &mut
                 None => 0,
             };
             match &mut codes {
-                Codes::U8(codes) => codes[at] = stored(components[channel], chance) as u8,
-                Codes::U16(codes) => codes[at] = stored(components[channel], chance) as u16,
-                Codes::F16(codes) => codes[at] = f16::from_f32(any_float(kind, components[channel], chance)),
-                Codes::F32(codes) => codes[at] = any_float(kind, components[channel], chance),
+                Codes::U8(codes) => codes[at] = stored(component, chance) as u8,
+                Codes::U16(codes) => codes[at] = stored(component, chance) as u16,
+                Codes::F16(codes) => codes[at] = f16::from_f32(any_float(kind, component, chance)),
+                Codes::F32(codes) => codes[at] = any_float(kind, component, chance),
             }
         }
     }

@@ -19,8 +19,11 @@ pub(crate) struct Case {
     /// The line of the report in which it counts.
     pub operation: &'static str,
     pub precision: Precision,
-    make: Box<dyn Fn(&mut Chance) -> Result<Job>>,
+    make: Box<Make>,
 }
+
+/// Makes a job of chance.
+type Make = dyn Fn(&mut Chance) -> Result<Job>;
 
 /// How much is verified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,6 +2,7 @@
 
 use super::{bakers, jobs, lavapipe, with_buffers_of};
 use crate::backend::gpu::device::Device;
+use crate::backend::gpu::operation::Doubt;
 use crate::backend::gpu::{Hosted, bake as device_bake};
 use crate::error::Result;
 use crate::map::{Codes, Depth, Edge, Grid, HeightMap, TexelFormat};
@@ -31,7 +32,7 @@ fn bake(device: &Device, before: impl FnMut(usize)) -> Result<()> {
     let formats: Vec<TexelFormat> = plan.outputs().collect();
     let mut codes = Codes::zeroed(Depth::Bits8, map.size().texels() * formats[0].channels);
     let mut sink = MapSink::new(codes.as_mut(), formats[0].row_codes(map.size().width()));
-    device_bake::run(device, &plan, &mut bands, &mut [&mut sink as &mut dyn CodeSink])
+    device_bake::run(device, &plan, Doubt::Near, &mut bands, &mut [&mut sink as &mut dyn CodeSink])
 }
 
 #[test]

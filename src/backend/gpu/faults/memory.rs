@@ -4,6 +4,7 @@ use super::{Job, bakers, jobs, lavapipe, lavapipe_below, opened, tangents};
 use crate::Baker;
 use crate::backend::gpu::bake as device_bake;
 use crate::backend::gpu::device::{Device, lock};
+use crate::backend::gpu::operation::Doubt;
 use crate::map::{Edge, Edges, Grid, HeightMap, NormalFormat, NormalMap};
 use crate::ops::bake::{BakeOptions, BakePlan, NormalOptions};
 use crate::ops::tangents::TangentMethod;
@@ -160,7 +161,8 @@ fn bake_in_little_memory() {
     let expected = Baker::cpu().normal(&heights, &NormalOptions::default()).unwrap();
     let bake = |device: &Device, map: &mut NormalMap, rows| {
         let mut bands = MapBands::new(&heights, plan.edges.y, rows);
-        device_bake::run(device, &plan, &mut bands, &mut [&mut MapSink::new(map.codes_mut(), 3 * 4096)]).unwrap();
+        device_bake::run(device, &plan, Doubt::Near, &mut bands, &mut [&mut MapSink::new(map.codes_mut(), 3 * 4096)])
+            .unwrap();
         assert!(*map == expected, "bands of {rows} rows");
     };
     let mut map = NormalMap::zeroed(plan.size, NormalFormat::default());

@@ -69,11 +69,14 @@ fn bakers(device: Device) -> (Arc<Untested>, Baker, Baker) {
     (gpu, relieved, alone)
 }
 
-/// One operation on one set of inputs: a baker gives the bytes of all its outputs.
+/// What a baker does: it gives the bytes of all outputs.
+type Run = dyn Fn(&Baker) -> Result<Vec<u8>>;
+
+/// One operation on one set of inputs.
 struct Job {
     name: String,
     entry_point: &'static str,
-    run: Box<dyn Fn(&Baker) -> Result<Vec<u8>>>,
+    run: Box<Run>,
 }
 
 impl Job {
