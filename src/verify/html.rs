@@ -140,7 +140,7 @@ mod tests {
     }
 
     fn values(case: &serde_json::Value) -> usize {
-        let expected = case["expected"].as_array().unwrap().iter();
+        let expected = case["expected"].as_array().unwrap().iter().filter(|it| it["name"] != "marks");
         let values = expected.map(|it| {
             let per_texel = if it["code"] == "bits" { 1 } else { it["channels"].as_u64().unwrap() };
             it["rows"].as_u64().unwrap() * per_texel * width(it)

@@ -68,6 +68,9 @@ pub(crate) struct Given {
     pub first_row: i32,
     /// Texels around that count, in each direction.
     pub reach: u32,
+    /// The columns that the formula takes left of the first and right of the last, as the edge mode says; `None` where
+    /// it takes none.
+    pub beside: Option<[usize; 2]>,
 }
 
 /// What must lie in the outputs.
@@ -254,9 +257,13 @@ impl Recording {
         }
     }
 
-    /// Values that are compared.
+    /// Values that are compared; marks are proofs besides.
     pub fn values(&self) -> usize {
-        self.expected.iter().map(|expected| expected.bytes.len() / expected.rows.code.bytes()).sum()
+        self.expected
+            .iter()
+            .filter(|expected| expected.name != "marks")
+            .map(|expected| expected.bytes.len() / expected.rows.code.bytes())
+            .sum()
     }
 
     /// The bake of a band.
@@ -270,7 +277,8 @@ impl Recording {
         // The row above, the rows and the row below lie one after the other.
         let code = CodeType::sent(one_channel(plan.height_type));
         let rows = RowsOf::texels(places[0], band.rows() + 2, plan.width(), code, 1);
-        Self { given: vec![Given { name: "heights", rows, first_row: -1, reach: 1 }], ..this }
+        let beside = Some([-1, plan.width() as isize].map(|x| plan.edges.x.resolve(x, plan.width())));
+        Self { given: vec![Given { name: "heights", rows, first_row: -1, reach: 1, beside }], ..this }
     }
 
     /// The blend of a band.
@@ -302,7 +310,7 @@ impl Recording {
         let maps = places.into_iter().zip(plan.layers()).zip(names);
         let given = maps.map(|((at, format), name)| {
             let rows = RowsOf::texels(at, band.rows, plan.width(), CodeType::sent(format), format.channels);
-            Given { name, rows, first_row: 0, reach: 0 }
+            Given { name, rows, first_row: 0, reach: 0, beside: None }
         });
         Self { given: given.collect(), ..this }
     }
@@ -376,7 +384,7 @@ impl Recording {
             passes: passes.collect(),
             inputs,
             output_words: words.outputs,
-            given: vec![Given { name: "normals", rows: normals, first_row: 0, reach: 0 }],
+            given: vec![Given { name: "normals", rows: normals, first_row: 0, reach: 0, beside: None }],
             expected: vec![directions, signs],
         }
     }

@@ -8,10 +8,10 @@ const POISON = 0xc5;
 // Room for the parameters of any kernel, as texbake has it.
 const PARAMS_BYTES = 256;
 
-// A case that has not answered for so long will not.
+// A case whose kernels are compiled and that has not answered for so long will not.
 const PATIENCE_SECONDS = 120;
 
-// Differing cases that are shown in full; the report has all of them.
+// Differing cases that are shown in full, and most rows that are unfolded unasked; the report has all of them.
 const SHOWN_PROBLEMS = 30;
 
 // Cases whose kernels are compiled while another one runs: browsers compile on several threads.
@@ -25,26 +25,40 @@ addEventListener("load", () => verify().catch(showBroken));
 async function verify() {
     const { notes, kernels, cases } = JSON.parse(element("recordings").textContent);
     const started = performance.now();
+    const sabotaged = notes.some(([label]) => label === "sabotage");
     const results = [];
-    const rows = showPlannedRows(cases.map(withKernelNames(kernels)));
-    showKernels(kernels);
+    cases.forEach((recording) => describe(recording, kernels));
+    const lines = showPlannedLines(cases, sabotaged);
+    showKernels(kernels, sabotaged);
+    showSabotage(sabotaged);
 
     const gpu = await openGpu(kernels).catch((error) => ({ unusable: messageOf(error) }));
     showDevice(notes, gpu);
     for (const [number, recording] of cases.entries()) {
         showProgress(number, cases.length, recording.name);
         compileAhead(gpu, cases.slice(number + 1, number + 1 + CASES_AHEAD));
-        const result = gpu.unusable ? failed(recording, gpu.unusable) : await resultOf(gpu, recording);
+        const result = gpu.unusable ? notRun(recording) : await resultOf(gpu, recording);
         results.push(result);
-        rows.get(recording).add(result);
+        lines.get(recording.line).add(result);
         await nextTurn();
     }
 
-    const report = reportOf(notes, gpu, results, performance.now() - started);
-    showVerdict(report);
-    showProblems(results, gpu.unusable);
+    const blind = [...lines].filter(([, line]) => sabotaged && line.result() !== "differs");
+    const unnoticed = blind.map(([name]) => name);
+    const report = reportOf(notes, gpu, results, unnoticed, performance.now() - started);
+    showVerdict(report, lines.size);
+    showProblems(report);
+    showCases(lines, report);
     offerReport(report);
     tellAutomation(report);
+}
+
+// What is said of a recording besides what it holds: its line in the summary, and the command that repeats it.
+function describe(recording, kernels) {
+    recording.kernel = recording.passes.map(({ kernel }) => kernels[kernel].name).join(" + ");
+    recording.line = `${recording.operation}, ${recording.precision}`;
+    // All of one operation and precision have the same one.
+    recording.bound = recording.expected.find(({ tolerance }) => tolerance)?.tolerance ?? null;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -144,9 +158,7 @@ async function parse({ device }, { name, text }) {
 }
 
 // The bytes that a recording's passes leave in the outputs.
-async function outputsOf(gpu, recording) {
-    const { device, layout } = gpu;
-    const pipelines = await Promise.all(recording.passes.map((pass) => pipelineOf(gpu, pass)));
+async function outputsOf({ device, layout }, recording, pipelines) {
     for (const filter of ["internal", "out-of-memory", "validation"]) {
         device.pushErrorScope(filter);
     }
@@ -198,8 +210,10 @@ async function resultOf(gpu, recording) {
         if (gpu.lost) {
             throw new Error(gpu.lost);
         }
-        const answer = Promise.race([outputsOf(gpu, recording), gpu.loss]);
-        const outputs = await withPatience(answer);
+        // Slow compilers are no silence: patience begins when the kernels are compiled.
+        const compiled = Promise.all(recording.passes.map((pass) => pipelineOf(gpu, pass)));
+        const pipelines = await Promise.race([compiled, gpu.loss]);
+        const outputs = await withPatience(Promise.race([outputsOf(gpu, recording, pipelines), gpu.loss]));
         if (gpu.stray) {
             throw new Error(`The device reports: ${gpu.stray}`);
         }
@@ -210,8 +224,16 @@ async function resultOf(gpu, recording) {
 }
 
 function failed(recording, message) {
-    return { ...outlineOf(recording), result: "failed", values: 0, differences: 0, message };
+    return { ...outlineOf(recording), result: "failed", ...NOTHING, message };
 }
+
+function notRun(recording) {
+    return { ...outlineOf(recording), result: "not run", ...NOTHING };
+}
+
+// Of values: `differ` are those with other bits, `differences` those that are beyond the bound, which of `exact` are
+// the same. Checks are marks by which each row proves that this run has written it.
+const NOTHING = { values: 0, differ: 0, differences: 0, checks: 0, failed_checks: 0 };
 
 function outlineOf({ name, operation, kernel, precision, formats }) {
     return { name, operation, kernel, precision, formats };
@@ -220,50 +242,75 @@ function outlineOf({ name, operation, kernel, precision, formats }) {
 // Compares all maps of a recording; one that holds no value has proved nothing.
 function compared(recording, outputs) {
     const maps = recording.expected.map((expected) => comparedMap(expected, outputs));
-    const sum = (of) => maps.reduce((total, map) => total + of(map), 0);
-    const values = sum((map) => map.values);
-    const differences = sum((map) => map.differences);
-    if (maps.some((map) => map.values === 0) || maps.length === 0) {
+    if (maps.some(({ compared }) => compared === 0) || maps.length === 0) {
         return failed(recording, "Nothing was compared.");
     }
+    const sum = (of) => maps.reduce((total, map) => total + (map[of] ?? 0), 0);
+    const counts = Object.fromEntries(Object.keys(NOTHING).map((of) => [of, sum(of)]));
     const worst = maps.find((map) => map.first);
     return {
         ...outlineOf(recording),
-        result: differences === 0 ? "agrees" : "differs",
-        values,
-        differences,
-        largest: largestOf(maps.map((map) => map.largest)),
+        result: worst ? "differs" : "agrees",
+        ...counts,
+        errors: merged(maps.map(({ errors }) => errors)),
         first: worst && { ...worst.first, from: inputsAround(recording, worst.first) },
     };
 }
 
 // Compares the rows of one map with what is expected there.
 function comparedMap(expected, outputs) {
+    const { tolerance, channels, name } = expected;
     const code = CODES[expected.code];
     const [right, got] = [bytesOf(expected.bytes), rowsIn(outputs, expected)];
     const values = right.length / code.bytes;
-    const largest = { codes: 0, ulps: 0, degrees: 0 };
-    let differences = 0;
-    let first = null;
+    const errors = { codes: noError(), ulps: noError(), degrees: noError() };
+    let [differ, beyond, first, turned] = [0, 0, null, 0];
     for (let index = 0; index < values; index++) {
         const [gotBits, rightBits] = [got, right].map((bytes) => bitsAt(bytes, index, code));
+        if (isDirection(expected) && index % channels === 0) {
+            turned = degreesBetween(...[got, right].map((bytes) => texelAt(bytes, index, code)));
+            count(errors.degrees, turned);
+        }
+        const error = gotBits === rightBits ? 0 : Math.abs(code.value(gotBits) - code.value(rightBits)) * code.perUnit;
+        if (code.unit !== null) {
+            count(errors[code.unit], error);
+        }
         if (gotBits === rightBits) {
             continue;
         }
-        const error = Math.abs(code.value(gotBits) - code.value(rightBits)) * code.perUnit;
-        const turned = isDirection(expected) ? degreesBetween(...[got, right].map((b) => texelAt(b, index, code))) : 0;
-        if (code.unit !== null) {
-            // A difference from NaN is larger than any.
-            largest[code.unit] = Math.max(largest[code.unit], Number.isNaN(error) ? Infinity : error);
-            largest.degrees = Math.max(largest.degrees, turned || 0);
-        }
-        const { tolerance } = expected;
+        differ += 1;
         if (!(tolerance && error <= tolerance[code.unit] && turned <= tolerance.degrees)) {
-            differences += 1;
+            beyond += 1;
             first ??= differenceAt(expected, index, code, gotBits, rightBits);
         }
     }
-    return { values, differences, largest, first };
+    const counts =
+        name === "marks" ? { checks: values, failed_checks: differ } : { values, differ, differences: beyond };
+    return { compared: values, ...counts, errors, first };
+}
+
+function noError() {
+    return { largest: 0, mean: 0, count: 0 };
+}
+
+// The mean is of all values, those without an error too.
+function count(errors, error) {
+    // A difference from NaN or infinity is larger than any.
+    const size = Number.isFinite(error) ? error : Infinity;
+    errors.count += 1;
+    errors.mean = size === Infinity ? Infinity : errors.mean + (size - errors.mean) / errors.count;
+    errors.largest = Math.max(errors.largest, size);
+}
+
+// The errors of many comparisons as those of one.
+function merged(all) {
+    const of = (unit) =>
+        all.reduce((sum, errors) => {
+            const [one, count] = [errors?.[unit] ?? noError(), sum.count + (errors?.[unit].count ?? 0)];
+            const mean = count && (sum.mean * sum.count + one.mean * one.count) / count;
+            return { largest: Math.max(sum.largest, one.largest), mean, count };
+        }, noError());
+    return { codes: of("codes"), ulps: of("ulps"), degrees: of("degrees") };
 }
 
 // Whether texels are directions, stored finely enough for angles to say something.
@@ -296,27 +343,26 @@ function differenceAt(expected, index, code, gotBits, rightBits) {
     };
 }
 
-function largestOf(all) {
-    const most = (of) => Math.max(0, ...all.map((one) => one?.[of] ?? 0));
-    return { codes: most("codes"), ulps: most("ulps"), degrees: most("degrees") };
-}
-
-// The inputs that a differing value was made of, row by row; null beyond the border, where the edge mode decides.
+// The inputs that a differing value was made of, row by row, with the columns and rows where they lie. Beyond the
+// border lies what the edge mode takes there; null where the recording does not have it.
 function inputsAround(recording, { row, column }) {
     const inputs = bytesOf(recording.inputs);
-    return recording.given.map(({ name, reach, first_row: firstRow, ...rows }) => {
+    return recording.given.map(({ name, reach, first_row: firstRow, beside, ...rows }) => {
         const code = CODES[rows.code];
         const bytes = rowsIn(inputs, rows);
         const width = rows.row_bytes / code.bytes / rows.channels;
+        const columnAt = (x) => (x < 0 ? beside?.[0] : x >= width ? beside?.[1] : x) ?? null;
         const texel = (y, x) => {
-            if (y < 0 || y >= rows.rows || x < 0 || x >= width) {
+            if (y < 0 || y >= rows.rows || x === null || x >= width) {
                 return null;
             }
             const first = (y * width + x) * rows.channels;
             return [...Array(rows.channels).keys()].map((at) => readable(code, bitsAt(bytes, first + at, code)));
         };
         const around = [...Array(2 * reach + 1).keys()].map((at) => at - reach);
-        return { name, texels: around.map((dy) => around.map((dx) => texel(row - firstRow + dy, column + dx))) };
+        const columns = around.map((dx) => columnAt(column + dx));
+        const texels = around.map((dy) => columns.map((x) => texel(row - firstRow + dy, x)));
+        return { name, columns, rows: around.map((dy) => row + dy), texels };
     });
 }
 
@@ -381,7 +427,7 @@ function readable(code, bits) {
 // The report
 // ---------------------------------------------------------------------------------------------------------------------
 
-function reportOf(notes, gpu, results, milliseconds) {
+function reportOf(notes, gpu, results, unnoticed, milliseconds) {
     const count = (result) => results.filter((one) => one.result === result).length;
     const sum = (of) => results.reduce((total, one) => total + one[of], 0);
     const counts = {
@@ -389,31 +435,51 @@ function reportOf(notes, gpu, results, milliseconds) {
         agree: count("agrees"),
         differ: count("differs"),
         failed: count("failed"),
+        not_run: count("not run"),
         values: sum("values"),
+        values_with_other_bits: sum("differ"),
         differences: sum("differences"),
+        checks: sum("checks"),
+        failed_checks: sum("failed_checks"),
     };
     return {
         ...Object.fromEntries(notes),
         // An empty run proves nothing.
         passed: counts.agree === counts.cases && counts.values > 0,
         ...counts,
+        unnoticed,
         browser: navigator.userAgent,
         adapter: gpu.adapter ? wordsForAdapter(gpu.info) : null,
         unusable: gpu.unusable ?? null,
         seconds: Math.round(milliseconds) / 1000,
         limits: gpu.device ? limitsOf(gpu.device) : {},
         compiled: gpu.compiled ?? [],
-        results,
+        results: results.map((one) => (wentWrong(one) ? { ...one, command: commandOf(notes, one) } : one)),
     };
+}
+
+function wentWrong({ result }) {
+    return result === "differs" || result === "failed";
+}
+
+// What repeats a case on the devices that a terminal reaches.
+function commandOf(notes, { name }) {
+    const { seed, sabotage } = Object.fromEntries(notes);
+    const options = `--seed ${seed}${sabotage ? " --sabotage" : ""}`;
+    return `texbake verify ${options} --only "${name.replace(/, dispatch \d+$/, "")}"`;
 }
 
 // The last two lines of the console, for programs: one for people, and one of JSON without what would make it long.
 function tellAutomation(report) {
     const failures = report.failed > 0 ? `, ${report.failed} failed` : "";
-    console.log(`texbake verify: ${report.agree} cases agree, ${report.differ} differ${failures}`);
+    const missing = report.not_run > 0 ? `, ${report.not_run} not run` : "";
+    console.log(`texbake verify: ${report.agree} cases agree, ${report.differ} differ${failures}${missing}`);
     const { results, compiled, limits, ...counts } = report;
     const wrong = (result) => results.filter((one) => one.result === result);
-    const differing = wrong("differs").map(({ name, differences, largest }) => ({ name, differences, largest }));
+    const largest = (errors) => Object.fromEntries(Object.entries(errors).map(([unit, of]) => [unit, of.largest]));
+    const differing = wrong("differs").map(({ name, differ, differences, errors }) => {
+        return { name, values_with_other_bits: differ, differences, largest: largest(errors) };
+    });
     const failing = wrong("failed").map(({ name }) => ({ name }));
     const slowest = compiled.toSorted((a, b) => b.milliseconds - a.milliseconds).slice(0, 5);
     const reasons = [...new Set(results.map(({ message }) => message).filter(Boolean))].slice(0, 5);
@@ -441,40 +507,24 @@ function limitsOf({ limits }) {
 // What is shown
 // ---------------------------------------------------------------------------------------------------------------------
 
-function withKernelNames(kernels) {
-    return (recording) => {
-        recording.kernel = recording.passes.map(({ kernel }) => kernels[kernel].name).join(" + ");
-        return recording;
-    };
-}
-
-// A row for each mix of kernel, precision and formats; gives the row of each recording.
-function showPlannedRows(cases) {
-    const [table, bodies, rows, rowOf] = [element("cases"), new Map(), new Map(), new Map()];
+// A line for each operation in each precision, as the terminal has them; by name.
+function showPlannedLines(cases, sabotaged) {
+    const lines = new Map();
     for (const recording of cases) {
-        const { operation, kernel, precision, formats } = recording;
-        if (!bodies.has(operation)) {
-            const title = make("th", { colSpan: 8, scope: "rowgroup" }, operation);
-            bodies.set(operation, table.appendChild(make("tbody", {}, make("tr", {}, title))));
+        if (!lines.has(recording.line)) {
+            lines.set(recording.line, new Line(recording, sabotaged));
         }
-        const key = JSON.stringify([operation, kernel, precision, formats, tolerancesOf(recording)]);
-        if (!rows.has(key)) {
-            rows.set(key, new CaseRow(bodies.get(operation), recording));
-        }
-        rows.get(key).planned += 1;
-        rowOf.set(recording, rows.get(key));
+        lines.get(recording.line).planned += 1;
     }
-    rows.forEach((row) => row.show());
-    return rowOf;
+    lines.forEach((line) => line.show());
+    return lines;
 }
 
-// The results of all cases of one kernel, precision and formats.
-class CaseRow {
-    constructor(body, recording) {
-        this.planned = 0;
-        this.results = [];
-        this.recording = recording;
-        this.row = body.appendChild(make("tr"));
+// All cases of one operation in one precision.
+class Line {
+    constructor(recording, sabotaged) {
+        Object.assign(this, { recording, sabotaged, planned: 0, results: [] });
+        this.row = element("lines").appendChild(make("tr"));
     }
 
     add(result) {
@@ -484,50 +534,139 @@ class CaseRow {
 
     show() {
         const { recording, results, planned } = this;
+        const { operation, precision, bound } = recording;
+        const hasRun = results.some(({ values }) => values > 0);
         const sum = (of) => results.reduce((total, one) => total + one[of], 0);
-        const [values, differences] = [sum("values"), sum("differences")];
-        const result = this.result();
+        const total = (of) => (hasRun ? sum(of).toLocaleString("en") : "");
+        const errors = merged(results.map((one) => one.errors));
         const count = results.length < planned ? `${results.length} of ${planned}` : planned;
-        const cells = [
-            ["Kernel", recording.kernel],
-            ["Precision", [recording.precision, tolerancesOf(recording)].filter(Boolean).join(", ")],
-            ["Formats", recording.formats],
-            ["Cases", count, "number"],
-            ["Values", values.toLocaleString("en"), "number"],
-            ["Differences", differences.toLocaleString("en"), "number"],
-            ["Largest difference", wordsForLargest(largestOf(results.map((one) => one.largest)), values)],
-            ["Result", result, "result"],
-        ];
-        this.row.dataset.result = result;
+        this.row.dataset.result = this.tone();
         this.row.replaceChildren(
-            ...cells.map(([label, text, className = ""]) => {
-                const cell = make("td", { className }, String(text));
-                cell.dataset.label = label;
-                return cell;
-            }),
+            ...cells([
+                ["Operation", operation],
+                ["Precision", precision],
+                ["Cases", count, "number"],
+                ["Values", total("values"), "number"],
+                ["Differ", total("differ"), "number"],
+                ["Beyond the bound", total("differences"), "number"],
+                ["Codes", wordsForErrors(errors.codes, bound?.codes), "errors"],
+                ["ulp", wordsForErrors(errors.ulps, bound?.ulps), "errors"],
+                ["Degrees", wordsForErrors(errors.degrees, bound?.degrees), "errors"],
+                ["Result", this.words(), "result"],
+            ]),
         );
     }
 
+    count(result) {
+        return this.results.filter((one) => one.result === result).length;
+    }
+
     result() {
-        const worst = ["failed", "differs"].find((bad) => this.results.some(({ result }) => result === bad));
+        const worst = ["failed", "differs", "not run"].find((bad) => this.count(bad) > 0);
         return worst ?? (this.results.length < this.planned ? "waiting" : "agrees");
+    }
+
+    // What a sabotaged kernel computes must differ.
+    tone() {
+        const result = this.result();
+        return this.sabotaged ? ({ differs: "noticed", agrees: "failed" }[result] ?? result) : result;
+    }
+
+    words() {
+        const result = this.result();
+        switch (result) {
+            case "agrees":
+                return this.sabotaged ? "not noticed" : this.recording.bound ? "in bounds" : "same bits";
+            case "differs":
+                return `differs in ${this.count(result)}${this.sabotaged ? ", as it must" : ""}`;
+            case "failed":
+                return `failed in ${this.count(result)}`;
+            default:
+                return result;
+        }
     }
 }
 
-// `within 1 code`; nothing of exact bits.
-function tolerancesOf({ expected }) {
-    const words = expected
-        .filter(({ tolerance }) => tolerance)
-        .flatMap(({ code, channels, tolerance }) => [
-            wordsForError(CODES[code].unit, tolerance[CODES[code].unit]),
-            ...(isDirection({ code, channels }) ? [wordsForError("degrees", tolerance.degrees)] : []),
-        ]);
-    return words.length > 0 ? `within ${[...new Set(words)].join(", ")}` : "";
+// `largest 1`, `mean 0.01` and `bound 1`, one above the other; nothing of exact bits that agree.
+function wordsForErrors({ largest, mean, count }, bound) {
+    if (count === 0 || (bound === undefined && largest === 0)) {
+        return "";
+    }
+    const words = [`largest ${short(largest)}`, `mean ${short(mean)}`];
+    return (bound === undefined ? words : [...words, `bound ${exactly(bound)}`]).map((line) => make("div", {}, line));
 }
 
-function wordsForLargest(largest, values) {
-    const words = Object.entries(largest).flatMap(([unit, error]) => (error > 0 ? [wordsForError(unit, error)] : []));
-    return words.join(", ") || (values > 0 ? "none" : "");
+// All cases, folded, those that went wrong first.
+function showCases(lines, report) {
+    const wrong = report.differ + report.failed;
+    const rank = (result) => ["failed", "differs", "not run", "agrees"].indexOf(result);
+    const folds = [...lines].map(([name, line]) => {
+        const results = line.results.toSorted((a, b) => rank(a.result) - rank(b.result));
+        const fold = make("details", {}, make("summary", {}, `${name}: ${wordsForCases(line)}`));
+        // Rows that nobody may look at are laid out when somebody does.
+        const fill = () => fold.append(casesTable(results, line.recording.bound));
+        fold.addEventListener("toggle", fill, { once: true });
+        fold.dataset.result = line.result();
+        return fold;
+    });
+    folds.sort((a, b) => rank(a.dataset.result) - rank(b.dataset.result));
+    const isWrong = ({ dataset }) => wentWrong(dataset);
+    folds.filter(isWrong).forEach((fold) => (fold.open = wrong <= SHOWN_PROBLEMS));
+    element("cases").replaceChildren(...(report.unusable ? [foldOf(report.cases, folds)] : folds));
+
+    const only = element("only-wrong");
+    const filter = () => (element("cases").dataset.only = only.checked ? "wrong" : "all");
+    only.checked = wrong > 0;
+    only.addEventListener("change", filter);
+    element("filter").hidden = wrong === 0;
+    filter();
+}
+
+// What has not run is a list that nobody needs.
+function foldOf(cases, folds) {
+    return make("details", {}, make("summary", {}, `${counted(cases, "case")} not run`), ...folds);
+}
+
+function wordsForCases(line) {
+    const counts = ["differs", "failed", "not run", "agrees"].map((result) => [line.count(result), result]);
+    const words = { differs: ["differs", "differ"], agrees: ["agrees", "agree"] };
+    const said = counts.filter(([count]) => count > 0);
+    return said.map(([count, result]) => `${count} ${words[result]?.[count === 1 ? 0 : 1] ?? result}`).join(", ");
+}
+
+function casesTable(results, bound) {
+    const heads = ["Case", "Kernel", "Values", "Differ", "Beyond the bound", "Errors", "Result"];
+    const classes = ["", "", "number", "number", "number", "", "result"];
+    const head = heads.map((words, place) => make("th", { scope: "col", className: classes[place] }, words));
+    const rows = results.map((one) => {
+        const row = make("tr");
+        row.dataset.result = one.result;
+        const counts = one.values > 0 ? [one.values, one.differ, one.differences] : ["", "", ""];
+        const numbers = counts.map((number) => number.toLocaleString("en"));
+        const texts = [one.name, one.kernel, ...numbers, wordsForAll(one.errors, bound), one.result];
+        row.append(...cells(texts.map((text, place) => [heads[place], text, classes[place]])));
+        return row;
+    });
+    return make("table", {}, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...rows));
+}
+
+// `largest 1 code, mean 0.01`, of each unit that has an error.
+function wordsForAll(errors, bound) {
+    const units = Object.entries(errors ?? {}).filter(([, { largest }]) => largest > 0);
+    const said = units.map(([unit, { largest, mean }]) => {
+        const most = bound ? `, bound ${exactly(bound[unit])}` : "";
+        return `largest ${wordsForError(unit, largest)}, mean ${short(mean)}${most}`;
+    });
+    return said.join("; ");
+}
+
+// Cells that name themselves where there is no room for columns.
+function cells(all) {
+    return all.map(([label, content, className = ""]) => {
+        const cell = make("td", { className }, ...[content].flat().map((it) => (it instanceof Node ? it : String(it))));
+        cell.dataset.label = label;
+        return cell;
+    });
 }
 
 function wordsForError(unit, error) {
@@ -566,7 +705,11 @@ function wordsForLimits(limits) {
     ].join(", ");
 }
 
-function showKernels(kernels) {
+function showKernels(kernels, sabotaged) {
+    element("kernels-are").textContent = sabotaged
+        ? "The WGSL that was compiled: texbake's, with a constant of each kernel changed on purpose."
+        : "The WGSL that was compiled, as it stands in texbake.";
+    element("kernels-count").textContent = counted(kernels.length, "kernel");
     element("kernels").replaceChildren(
         ...kernels.map(({ name, text }) => {
             const details = make("details", {}, make("summary", {}, name));
@@ -577,6 +720,14 @@ function showKernels(kernels) {
     );
 }
 
+// So that nobody takes the differences for the device's.
+function showSabotage(sabotaged) {
+    element("sabotaged").hidden = !sabotaged;
+    document.title = `${sabotaged ? `${SABOTAGED} · ` : ""}texbake verify`;
+}
+
+const SABOTAGED = "sabotaged on purpose: must differ";
+
 function showProgress(done, all, name) {
     element("headline").textContent = `Running case ${done + 1} of ${all}`;
     element("summary").textContent = name;
@@ -584,15 +735,30 @@ function showProgress(done, all, name) {
     element("progress").value = done;
 }
 
-function showVerdict(report) {
-    const { passed, cases, values, seconds } = report;
+function showVerdict(report, lines) {
+    const { passed, cases, unusable, sabotage } = report;
     const headline = headlineOf(report);
-    const counts = `${counted(cases, "case")}, ${counted(values, "value")} compared in ${seconds.toFixed(1)} seconds.`;
     element("headline").textContent = headline;
-    element("summary").textContent = report.unusable ?? (cases === 0 ? "An empty run proves nothing." : counts);
-    element("verdict").dataset.state = passed ? "good" : "bad";
+    element("summary").textContent = unusable ?? (cases === 0 ? "An empty run proves nothing." : wordsForCounts(report));
+    element("noticed").textContent = sabotage && !unusable ? wordsForSabotage(report, lines) : "";
+    const isSabotageNoticed = sabotage && !unusable && report.unnoticed.length === 0 && cases > 0;
+    element("verdict").dataset.state = isSabotageNoticed ? "sabotaged" : passed && !sabotage ? "good" : "bad";
     element("progress").hidden = true;
-    document.title = `${headline} · texbake verify`;
+    document.title = `${sabotage ? `${SABOTAGED} · ` : ""}${headline} · texbake verify`;
+}
+
+function wordsForCounts({ cases, values, checks, failed_checks: failedChecks, seconds }) {
+    const marks = failedChecks > 0 ? `${failedChecks.toLocaleString("en")} of ${counted(checks, "mark")} wrong` : null;
+    return (
+        `${counted(cases, "case")}, ${counted(values, "value")} compared in ${seconds.toFixed(1)} seconds; besides, ` +
+        `${marks ?? counted(checks, "mark")} by which rows prove that they were written.`
+    );
+}
+
+function wordsForSabotage({ unnoticed }, lines) {
+    return unnoticed.length === 0
+        ? `All ${counted(lines, "line")} of the summary noticed it, as they must; not every case can.`
+        : `Not noticed in: ${unnoticed.join("; ")}.`;
 }
 
 function headlineOf({ passed, unusable, cases, differ, failed }) {
@@ -622,10 +788,10 @@ function showBroken(error) {
     console.log(`texbake verify report: ${JSON.stringify(report)}`);
 }
 
-function showProblems(results, unusable) {
+function showProblems({ results, sabotage }) {
     const differing = results.filter(({ result }) => result === "differs");
     const failing = results.filter(({ result }) => result === "failed");
-    if (unusable || differing.length + failing.length === 0) {
+    if (differing.length + failing.length === 0) {
         return;
     }
     const messages = Map.groupBy(failing, ({ message }) => message);
@@ -635,8 +801,9 @@ function showProblems(results, unusable) {
         const more = differing.length - SHOWN_PROBLEMS;
         cards.push(make("p", {}, `${counted(more, "more case")} that differ: the report has all of them.`));
     }
-    element("problems-title").textContent =
+    const title =
         differing.length === 0 ? "What failed" : failing.length === 0 ? "What differs" : "What failed and what differs";
+    element("problems-title").textContent = title + (sabotage ? ", as it must" : "");
     element("problems-list").replaceChildren(...cards);
     element("problems").hidden = false;
 }
@@ -647,14 +814,18 @@ function failureCard(message, cases) {
     return make("div", { className: "problem" }, make("h3", {}, message), affected);
 }
 
-function differenceCard({ name, values, differences, largest, first }, open) {
+function differenceCard({ name, values, differ, differences, checks, failed_checks, errors, first, command }, open) {
+    const of = (part, all) => `${part.toLocaleString("en")} of ${all.toLocaleString("en")}`;
     const facts = [
-        ["differing values", `${differences.toLocaleString("en")} of ${values.toLocaleString("en")}`],
-        ["largest difference", wordsForLargest(largest, values)],
-        ["first difference", [wordsForPlace(first), first.channel].filter(Boolean).join(", ")],
+        ["values that differ", of(differ, values)],
+        ["beyond the bound", of(differences, values)],
+        ...(failed_checks > 0 ? [["wrong marks of rows", of(failed_checks, checks)]] : []),
+        ["errors", wordsForAll(errors) || "none"],
+        ["first beyond the bound", [wordsForPlace(first), first.channel].filter(Boolean).join(", ")],
         ["got", make("code", {}, first.got)],
         ["expected", make("code", {}, first.expected)],
-        ...first.from.map(({ name, texels }) => [name, texelsAround(texels)]),
+        ...first.from.map((input) => [input.name, texelsAround(input)]),
+        ["on a terminal", make("code", {}, command)],
     ];
     return make("details", { className: "problem", open }, make("summary", {}, name), make("dl", {}, ...listed(facts)));
 }
@@ -671,21 +842,28 @@ function wordsForPlace({ map, column, row }) {
     }
 }
 
-function texelsAround(texels) {
+function texelsAround({ columns, rows, texels }) {
     if (texels.length === 1) {
         return make("code", {}, texels[0][0]?.join(", ") ?? "beyond the map");
     }
     const middle = (texels.length - 1) / 2;
+    const head = columns.map((column) => make("th", { scope: "col" }, column === null ? "beyond" : `column ${column}`));
     const cell = (texel, y, x) =>
-        make("td", { className: x === middle && y === middle ? "here" : "" }, texel?.join(", ") ?? "edge");
-    const rows = texels.map((row, y) => make("tr", {}, ...row.map((texel, x) => cell(texel, y, x))));
-    return make("table", { className: "around" }, make("tbody", {}, ...rows));
+        make("td", { className: x === middle && y === middle ? "here" : "" }, texel?.join(", ") ?? "beyond the edge");
+    const body = texels.map((row, y) => {
+        const title = make("th", { scope: "row" }, rows[y] < 0 ? "above row 0" : `row ${rows[y]}`);
+        return make("tr", {}, title, ...row.map((texel, x) => cell(texel, y, x)));
+    });
+    const table = make("table", { className: "around" });
+    table.append(make("thead", {}, make("tr", {}, make("td"), ...head)), make("tbody", {}, ...body));
+    return make("div", { className: "scrolls" }, table);
 }
 
 function offerReport(report) {
-    const [button, area, copied] = [element("copy"), element("report"), element("copied")];
+    const [button, save, area, copied] = ["copy", "save", "report", "copied"].map(element);
     const text = JSON.stringify(report, null, 2);
-    button.disabled = false;
+    button.disabled = save.disabled = false;
+    save.addEventListener("click", () => saveAs("texbake-verify.json", text));
     button.addEventListener("click", async () => {
         try {
             await navigator.clipboard.writeText(text);
@@ -702,6 +880,15 @@ function offerReport(report) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Small things
 // ---------------------------------------------------------------------------------------------------------------------
+
+// Through the browser's own downloads.
+function saveAs(name, text) {
+    const link = make("a", { download: name });
+    const place = URL.createObjectURL(new Blob([text], { type: "application/json" }));
+    link.href = place;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(place), 60_000);
+}
 
 function element(id) {
     return document.getElementById(id);
@@ -723,7 +910,15 @@ function counted(count, noun) {
 
 // Three digits of any magnitude.
 function short(number) {
+    if (!Number.isFinite(number) || (Number.isInteger(number) && number < 1e5)) {
+        return String(number);
+    }
     return number >= 0.01 && number < 1e5 ? String(Number(number.toPrecision(3))) : number.toExponential(1);
+}
+
+// A bound is never shown wider or narrower than it is.
+function exactly(number) {
+    return Number(short(number)) === number ? short(number) : String(number);
 }
 
 function bytesOf(base64) {
