@@ -23,10 +23,11 @@ pub enum Precision {
     /// - Lengyel, Hegde: no difference where the device divides and takes roots as IEEE says.
     /// - Signs: none differ.
     ///
-    /// `texbake verify` holds every device to these bounds, for heights of any scale, normals that lean up to 60 degrees,
-    /// weights up to 1 in magnitude and triangles that are no slivers: one integer code; 16 units in the last place of 1
-    /// (2^-10 of 16f, 2^-23 of 32f) and 1e-5 degrees; tangents 2e-4 degrees, and MikkTSpace's 2.5e-2, since WGSL lets
-    /// acos be off by 6.8e-5 radians, by which angles weigh triangles.
+    /// `texbake verify` holds every device to these bounds, which follow from what WGSL lets operations be off, for
+    /// heights of any scale (float heights up to 24), normals that lean up to 60 degrees, weights up to 1 in magnitude
+    /// and triangles that are no slivers: one integer code; 8 units in the last place of 1 (2^-10 of 16f, 2^-23 of 32f)
+    /// and 2.5e-5 degrees, of blends 20 units and 1.3e-4 degrees; tangents 2.1e-4 degrees, and MikkTSpace's 2.9e-2, since
+    /// acos may be off by 2^-11, and angles weigh triangles.
     Fast,
 }
 
