@@ -13,9 +13,9 @@ use std::collections::HashSet;
 /// A page that verifies the WebGPU of whatever browser opens it: one file that holds the kernels, inputs, and the
 /// specification's answers, refers to nothing else, and opens from a disk too.
 ///
-/// It ends by writing two lines to the browser's console, for programs: `texbake verify: 12 cases agree, 0 differ`, and
-/// `texbake verify report: ` with a JSON object. What it compares are the kernels' outputs, before anything that the
-/// CPU does with them.
+/// It ends by writing two lines to the browser's console, for programs: `texbake verify: 12 cases agree, 0 differ`, after
+/// which come how many failed and how many were not run, if any, and `texbake verify report: ` with a JSON object. What
+/// it compares are the kernels' outputs, before anything that the CPU does with them.
 #[derive(Debug, Clone)]
 pub struct Page {
     html: String,

@@ -578,7 +578,7 @@ class Line {
             case "agrees":
                 return this.sabotaged ? "not noticed" : this.recording.bound ? "in bounds" : "same bits";
             case "differs":
-                return `differs in ${this.count(result)}${this.sabotaged ? ", as it must" : ""}`;
+                return `${this.sabotaged ? "noticed in" : "differs in"} ${this.count(result)}`;
             case "failed":
                 return `failed in ${this.count(result)}`;
             default:
@@ -723,6 +723,7 @@ function showKernels(kernels, sabotaged) {
 // So that nobody takes the differences for the device's.
 function showSabotage(sabotaged) {
     element("sabotaged").hidden = !sabotaged;
+    document.body.toggleAttribute("data-sabotaged", sabotaged);
     document.title = `${sabotaged ? `${SABOTAGED} · ` : ""}texbake verify`;
 }
 
