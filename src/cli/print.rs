@@ -316,7 +316,7 @@ pub fn device_table(devices: &[Device]) -> String {
 /// How each operation of a device agrees with the specification; then the errors of `fast`, beside their bounds.
 pub fn comparison_table(comparisons: &[Comparison]) -> String {
     let mut table = plain_table(&["operation", "cases", "values", "differ", "result"], &[1, 2, 3]);
-    let mut errors = plain_table(&["errors of fast: largest, mean, bound", "codes", "ulp", "degrees"], &[]);
+    let mut errors = plain_table(&["fast: largest/mean/bound", "codes", "ulp", "degrees"], &[]);
     for comparison in comparisons {
         let Agreement { values, differing, codes, ulps, degrees, .. } = comparison.agreement;
         let result = match (comparison.failed_cases, comparison.bound) {
@@ -330,7 +330,7 @@ pub fn comparison_table(comparisons: &[Comparison]) -> String {
         if let Some(bound) = comparison.bound {
             let cell = |errors: Errors, bound: f64| match errors.count {
                 0 => String::new(),
-                _ => format!("{}, {}, {}", short(errors.largest), short(errors.mean), short(bound)),
+                _ => format!("{}/{}/{}", short(errors.largest), short(errors.mean), short(bound)),
             };
             let name = comparison.operation.to_owned();
             let cells = [cell(codes, bound.codes), cell(ulps, bound.ulps), cell(degrees, bound.degrees)];

@@ -235,10 +235,13 @@ fn examine(
     };
     let bar = bar(arguments.quiet);
     let name = subject.name();
-    if bar.is_hidden() && !arguments.quiet {
-        say(format_args!("verifying {name}"));
-    }
-    let report = subject.verify(options, monitor, &mut |progress| advance(&bar, &name, progress));
+    let report = subject.verify(options, monitor, &mut |progress| {
+        // Where no bar is seen.
+        if progress.done == 0 && bar.is_hidden() && !arguments.quiet {
+            say(format_args!("verifying {name}, {} cases", progress.of));
+        }
+        advance(&bar, &name, progress);
+    });
     bar.finish_and_clear();
     report
 }

@@ -55,7 +55,7 @@ impl Backend for Changed {
 
     fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
         let slope = match plan.slope {
-            Slope::Integer(slope) => Slope::Integer(IntegerSlope { px: -(slope.px / 2) - 1, ..slope }),
+            Slope::Integer(slope) => Slope::Integer(IntegerSlope { px: -slope.px - 1, ..slope }),
             Slope::Float(slope) => Slope::Float(FloatSlope { kx: -0.5 * slope.kx, ..slope }),
         };
         self.0.bake(&BakePlan { slope, ..*plan }, bands, sinks)

@@ -29,17 +29,20 @@ pub(super) fn cases(extent: Extent) -> Vec<Case> {
     let mut draw = Chance::named(0, "bakes");
     for precision in PRECISIONS {
         let mut decks = ["normal map", "parallax map", "both in one pass"].map(|name| (name, Deck::new(name)));
-        for height_type in HEIGHT_TYPES {
-            for outputs in every_outputs(extent, &mut draw) {
+        for (height, height_type) in HEIGHT_TYPES.into_iter().enumerate() {
+            for (at, outputs) in every_outputs(extent, &mut draw).into_iter().enumerate() {
                 let deck = decks.iter_mut().find(|(name, _)| *name == outputs.operation).map(|(_, deck)| deck);
                 let deck = deck.expect("a deck for each operation");
-                for &kind in kinds(precision) {
-                    for (filter, edges, convention) in options(extent, precision, height_type, kind, deck) {
+                for (number, &kind) in kinds(precision).iter().enumerate() {
+                    let options = options(extent, precision, height_type, kind, deck);
+                    for (turn, (filter, edges, convention)) in options.into_iter().enumerate() {
                         // Parallax maps have no green.
                         if outputs.normal.is_none() && convention == Convention::Dx && extent == Extent::Full {
                             continue;
                         }
-                        let scale = draw.of(scales(precision, height_type));
+                        // Every format has every scale in turn.
+                        let scales = scales(precision, height_type);
+                        let scale = scales[(at + number + 3 * height + turn) % scales.len()];
                         let options = (edges, filter, convention, scale);
                         cases.push(case(precision, height_type, outputs, kind, options));
                     }
