@@ -2,9 +2,10 @@
 
 use super::bounds;
 use super::cases::Case;
+use super::options::Options;
 use super::page::{PageCase, page};
 use super::sabotage;
-use super::subject::{Options, Progress};
+use super::subject::Progress;
 use crate::backend::gpu::recording::{Recording, Tolerance};
 use crate::error::Result;
 use crate::stream::Monitor;

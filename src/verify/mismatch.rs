@@ -4,11 +4,19 @@ use super::agreement::Difference;
 use super::answer::{Answer, Meaning};
 use super::cases::Case;
 use super::job::Job;
+use super::options::Options;
 use super::report::{Mismatch, OracleAnswer, Stored};
 use super::shrink::{Try, shrink};
-use super::subject::{Options, Subject};
 use crate::baker::Baker;
 use crate::ops::Precision;
+
+/// Who gives the answers that are wrong.
+pub(super) struct Origin<'a> {
+    pub baker: &'a Baker,
+    /// `None` for the CPU.
+    pub adapter: Option<String>,
+    pub is_sabotaged: bool,
+}
 
 /// A job that fails, and where.
 pub(super) struct Failing {
@@ -27,7 +35,7 @@ pub(super) fn smallest(job: Job, difference: Difference, check: impl FnMut(&Job)
 
 impl Failing {
     /// What everybody says of it.
-    pub fn describe(&self, subject: &Subject, case: &Case, options: &Options) -> Mismatch {
+    pub fn describe(&self, origin: &Origin<'_>, case: &Case, options: &Options) -> Mismatch {
         let Difference { map, index } = self.difference;
         let exact = self.job.with_precision(Precision::Exact);
         let stored = |job: &Job, baker: &Baker| {
@@ -41,14 +49,14 @@ impl Failing {
             case: case.name.clone(),
             input: self.job.input(),
             place: answer.map(|answer| place(answer, index)).unwrap_or_default(),
-            device: stored(&self.job, subject.baker()),
+            device: stored(&self.job, origin.baker),
             cpu: stored(&self.job, &Baker::cpu()),
             specification: stored(&exact, &Baker::reference()),
             oracle: self.job.real(map, index).map(|real| OracleAnswer {
                 component: real.to_string(),
                 bits: answer.and_then(|answer| real.code(answer.format)),
             }),
-            command: command(subject, case, options),
+            command: command(origin, case, options),
         }
     }
 }
@@ -63,13 +71,13 @@ fn place(answer: &Answer, index: usize) -> String {
 }
 
 /// What repeats a case.
-fn command(subject: &Subject, case: &Case, options: &Options) -> String {
-    let place = match subject.adapter_name() {
+fn command(origin: &Origin<'_>, case: &Case, options: &Options) -> String {
+    let place = match &origin.adapter {
         None => "--backend cpu".to_owned(),
-        Some(name) => format!("--adapter {}", quoted(&name)),
+        Some(name) => format!("--adapter {}", quoted(name)),
     };
     let full = if options.full { " --full" } else { "" };
-    let sabotage = if subject.is_sabotaged() { " --sabotage" } else { "" };
+    let sabotage = if origin.is_sabotaged { " --sabotage" } else { "" };
     format!("texbake verify {place} --seed {}{full}{sabotage} --only {}", options.seed, quoted(&case.name))
 }
 

@@ -19,6 +19,7 @@ mod chance;
 mod html;
 mod job;
 mod mismatch;
+mod options;
 mod oracle;
 #[cfg(feature = "gpu")]
 mod own_kernel;
@@ -32,7 +33,8 @@ mod subject;
 pub use agreement::{Agreement, Bound, Errors};
 #[cfg(feature = "gpu")]
 pub use html::Page;
+pub use options::Options;
 #[cfg(feature = "gpu")]
 pub use own_kernel::{Binding, KernelComparison, OwnKernel, Tolerance, WordMismatch, Work};
 pub use report::{Comparison, DeviceReport, Mismatch, OracleAnswer, Report, Stored};
-pub use subject::{Options, Progress, Subject};
+pub use subject::{Progress, Subject};

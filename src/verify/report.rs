@@ -1,7 +1,7 @@
 //! What was found.
 
 use super::agreement::{Agreement, Bound};
-use super::subject::Options;
+use super::options::Options;
 use serde::Serialize;
 
 /// What verification found, on each device.

@@ -3,81 +3,20 @@
 use super::agreement::{Agreement, Difference, compare};
 use super::answer::Answer;
 use super::bounds;
-use super::cases::{Case, Extent, cases};
+use super::cases::Case;
 use super::job::Job;
-use super::mismatch;
+use super::mismatch::{self, Origin};
+use super::options::Options;
 use super::report::{Comparison, DeviceReport};
 use super::sabotage;
 use crate::backend::cpu::Cpu;
 #[cfg(feature = "gpu")]
 use crate::backend::{Backend, gpu::Untested};
 use crate::baker::Baker;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::ops::Precision;
 use crate::stream::Monitor;
 use std::sync::Arc;
-
-/// What is verified.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Options {
-    /// What all inputs are made from.
-    pub seed: u64,
-    /// Besides every kernel on every kind of input: every filter under every edge mode and convention, and every pair of
-    /// formats that are blended. Fifty thousand cases instead of two thousand.
-    pub full: bool,
-    /// Only cases that have all these words: `normal map, u8|u16, wrap`.
-    pub only: Option<String>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { seed: 1, full: false, only: None }
-    }
-}
-
-impl Options {
-    /// The same of a quick run.
-    #[cfg(feature = "gpu")]
-    pub(super) fn quick(&self) -> Self {
-        Self { full: false, ..self.clone() }
-    }
-
-    /// The cases that these options mean.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] if there is none.
-    pub(crate) fn cases(&self) -> Result<Vec<Case>> {
-        let cases = cases(if self.full { Extent::Full } else { Extent::Quick });
-        match &self.only {
-            None => Ok(cases),
-            Some(only) => cases_with(only, cases),
-        }
-    }
-}
-
-/// The cases that have all of some words. A word is a part of a case's name between commas, or some whole words of one;
-/// where the first finds cases, the second is not looked for.
-fn cases_with(only: &str, cases: Vec<Case>) -> Result<Vec<Case>> {
-    let only = only.to_lowercase();
-    let wanted: Vec<Vec<&str>> = only.split(',').map(|word| word.split('|').map(str::trim).collect()).collect();
-    let is_part = |name: &str, word: &str| name.split(", ").any(|part| part == word);
-    let is_in_part =
-        |name: &str, word: &str| name.split(", ").any(|part| format!(" {part} ").contains(&format!(" {word} ")));
-    for matches in [&is_part as &dyn Fn(&str, &str) -> bool, &is_in_part] {
-        let has = |case: &Case, either: &Vec<&str>| either.iter().any(|word| matches(&case.name, word));
-        if cases.iter().any(|case| wanted.iter().all(|either| has(case, either))) {
-            return Ok(cases.into_iter().filter(|case| wanted.iter().all(|either| has(case, either))).collect());
-        }
-    }
-    let is_known = |word: &&str| cases.iter().any(|case| is_in_part(&case.name, word));
-    let unknown: Vec<&str> = wanted.concat().into_iter().filter(|word| !is_known(word)).collect();
-    let example = "such as normal map, exact, u16, wrap, random";
-    let range = match unknown[..] {
-        [] => format!("words that some case has together, {example}"),
-        _ => format!("words of a case's name with commas between them, {example}; no case has {}", unknown.join(", ")),
-    };
-    Err(Error::parameter("only", only, range))
-}
 
 /// How far verification of a device has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -116,7 +55,7 @@ impl Subject {
     /// The adapter that `selector` means, as for [`Baker::gpu`], or the best one; its kernels are not tested before.
     ///
     /// # Errors
-    /// [`Error::Device`] if there is none, or it does not open.
+    /// [`crate::Error::Device`] if there is none, or it does not open.
     #[cfg(feature = "gpu")]
     pub fn adapter(selector: Option<&str>) -> Result<Self> {
         Ok(Self::on(Untested::open(selector)?))
@@ -158,14 +97,6 @@ impl Subject {
         self.baker.name()
     }
 
-    pub(super) fn baker(&self) -> &Baker {
-        &self.baker
-    }
-
-    pub(super) fn is_sabotaged(&self) -> bool {
-        self.sabotaged
-    }
-
     /// The GPU, if it is one.
     #[cfg(feature = "gpu")]
     pub(super) fn gpu(&self) -> Option<&Untested> {
@@ -173,7 +104,7 @@ impl Subject {
     }
 
     /// The adapter's name; `None` for the CPU.
-    pub(super) fn adapter_name(&self) -> Option<String> {
+    fn adapter_name(&self) -> Option<String> {
         #[cfg(feature = "gpu")]
         return self.gpu.as_ref().map(|gpu| gpu.device());
         #[cfg(not(feature = "gpu"))]
@@ -183,7 +114,7 @@ impl Subject {
     /// Runs every case that the options mean and compares each answer with the specification's.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if the options mean no case; [`Error::Cancelled`] if the monitor says so. What the device
+    /// [`crate::Error::Parameter`] if the options mean no case; [`crate::Error::Cancelled`] if the monitor says so. What the device
     /// does wrong is no error, but in the report.
     pub fn verify(
         &self,
@@ -261,7 +192,8 @@ impl Subject {
                     checked.ok()?.1
                 };
                 let found = mismatch::smallest(job.clone(), difference, check);
-                comparison.mismatch = Some(found.describe(self, case, options));
+                let origin = Origin { baker: &self.baker, adapter: self.adapter_name(), is_sabotaged: self.sabotaged };
+                comparison.mismatch = Some(found.describe(&origin, case, options));
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use super::adapters::describe;
 use super::kernel::{Kernel, KernelSource};
+use super::lock::lock;
 use super::pace::{Pace, Submission, Work};
 use super::slot::Slot;
 use crate::error::{Error, Result};
@@ -9,7 +10,7 @@ use std::any::Any;
 use std::collections::{HashMap, HashSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock};
 use std::time::Duration;
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, CommandBuffer, ComputePipeline,
@@ -395,9 +396,4 @@ fn bind_group_layout(device: &wgpu::Device) -> BindGroupLayout {
 pub(super) fn panic_text(panic: &(dyn Any + Send)) -> &str {
     let text = panic.downcast_ref::<&str>().copied();
     text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("no reason given")
-}
-
-/// Locks; a thread that panicked while it held the lock left a cache entry out at worst.
-pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -14,6 +14,7 @@ mod kernel;
 #[cfg(test)]
 mod layer_tests;
 mod layers;
+mod lock;
 mod mesh_parts;
 mod operation;
 mod output;

@@ -1,7 +1,7 @@
 //! How much a device computes in one submission: so little that no driver takes the device for hung.
 
-use super::device::lock;
 use super::kernel::Kernel;
+use super::lock::lock;
 use std::collections::{HashMap, VecDeque};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};

@@ -4,10 +4,10 @@
 //! The bytes are those that [`super::transfer`] and [`super::tangents`] send; the answers are the reference's.
 
 use super::bake;
-use super::device::lock;
 use super::input::one_channel;
 use super::kernel::Kernel;
 use super::layers::LayerOperation;
+use super::lock::lock;
 use super::mesh_parts::Parts;
 use super::operation::{Layer, Operation, Rows, WORKGROUP, output_row_bytes, row_groups};
 use super::tangents::{self, NEGATIVE};

@@ -3,7 +3,8 @@
 use super::{Job, bakers, jobs, lavapipe, lavapipe_below, opened, tangents};
 use crate::Baker;
 use crate::backend::gpu::bake as device_bake;
-use crate::backend::gpu::device::{Device, lock};
+use crate::backend::gpu::device::Device;
+use crate::backend::gpu::lock::lock;
 use crate::backend::gpu::operation::Doubt;
 use crate::map::{Edge, Edges, Grid, HeightMap, NormalFormat, NormalMap};
 use crate::ops::bake::{BakeOptions, BakePlan, NormalOptions};

@@ -1,8 +1,9 @@
 //! What comes back from a device is not what it should have computed.
 
 use super::{Job, bakers, jobs, with_buffers_of};
-use crate::backend::gpu::device::{Device, Spoil, lock};
+use crate::backend::gpu::device::{Device, Spoil};
 use crate::backend::gpu::kernel::BAKE_INTEGERS;
+use crate::backend::gpu::lock::lock;
 use std::sync::{Arc, Mutex};
 
 /// A device whose buffers are so small that each job takes several of them.
