@@ -13,7 +13,10 @@
 
 #[path = "../tests/support/bevy.rs"]
 mod bevy;
+#[path = "../src/split_mix.rs"]
+mod split_mix;
 
+use split_mix::SplitMix;
 use std::cell::LazyCell;
 use std::hint::black_box;
 use std::time::Instant;
@@ -210,18 +213,6 @@ impl Torus {
 /// Fisher and Yates.
 fn shuffle<T>(random: &mut SplitMix, values: &mut [T]) {
     for last in (1..values.len()).rev() {
-        values.swap(last, (random.next() % (last as u64 + 1)) as usize);
-    }
-}
-
-/// Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014.
-struct SplitMix(u64);
-
-impl SplitMix {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
+        values.swap(last, random.below(last as u64 + 1) as usize);
     }
 }

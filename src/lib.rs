@@ -139,6 +139,7 @@ mod mesh;
 mod names;
 mod ops;
 pub mod shading;
+mod split_mix;
 pub mod stream;
 pub mod verify;
 

@@ -1,5 +1,6 @@
 //! How two normal maps differ.
 
+use super::angle;
 use super::census::Texel;
 use super::read::for_each_band;
 use crate::error::{Error, Result};
@@ -177,15 +178,10 @@ impl Directions {
     }
 }
 
-/// The angle between two vectors of any length: well conditioned for small angles too.
+/// The angle between two vectors, if both have a direction.
 fn degrees(a: [f64; 3], b: [f64; 3]) -> f32 {
     let has_direction = |v: [f64; 3]| v.iter().all(|component| component.is_finite()) && v != [0.0; 3];
-    if !has_direction(a) || !has_direction(b) {
-        return NO_ANGLE;
-    }
-    let dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let [x, y, z] = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-    libm::atan2((x * x + y * y + z * z).sqrt(), dot).to_degrees() as f32
+    if has_direction(a) && has_direction(b) { angle::degrees(a, b) as f32 } else { NO_ANGLE }
 }
 
 /// Sums over the rows.

@@ -4,6 +4,7 @@
 //! compares two maps, and [`heatmap`] paints where they differ. Maps are read row by row: a few bands of them are in
 //! memory, and sums of 8 bytes for each row and column.
 
+pub(crate) mod angle;
 mod banding;
 mod census;
 mod check;

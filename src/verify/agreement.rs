@@ -1,6 +1,7 @@
 //! How two answers agree.
 
 use super::answer::Answer;
+use crate::inspect::angle::degrees;
 use crate::map::Depth;
 use serde::Serialize;
 
@@ -172,10 +173,7 @@ fn error_of(expected: &Answer, got: &Answer, index: usize) -> f64 {
 /// The angle between the directions of a texel, in degrees; `None` for numbers, and where either has no direction.
 fn angle(expected: &Answer, got: &Answer, texel: usize) -> Option<f64> {
     let (a, b) = (expected.direction(texel)?, got.direction(texel)?);
-    let dot: f64 = (0..3).map(|axis| a[axis] * b[axis]).sum();
-    let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-    let across = cross.iter().map(|part| part * part).sum::<f64>().sqrt();
-    (across > 0.0 || dot != 0.0).then(|| across.atan2(dot).to_degrees())
+    (a != [0.0; 3] && b != [0.0; 3]).then(|| degrees(a, b))
 }
 
 #[cfg(test)]

@@ -1,8 +1,10 @@
 //! Chance that repeats.
 
-/// SplitMix64 (Steele, Lea and Flood, 2014): the same numbers from the same seed everywhere.
+use crate::split_mix::SplitMix;
+
+/// The same numbers from the same seed everywhere.
 #[derive(Debug, Clone)]
-pub(crate) struct Chance(u64);
+pub(crate) struct Chance(SplitMix);
 
 impl Chance {
     /// Chance of its own for each name under one seed, so that a case repeats without those before it.
@@ -11,20 +13,16 @@ impl Chance {
         let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
         });
-        Self(seed ^ hash)
+        Self(SplitMix(seed ^ hash))
     }
 
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.0.bits()
     }
 
     /// An integer in `0..end`.
     pub fn below(&mut self, end: u64) -> u64 {
-        self.bits() % end
+        self.0.below(end)
     }
 
     /// One of them.

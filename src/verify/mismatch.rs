@@ -38,20 +38,17 @@ impl Failing {
     pub fn describe(&self, origin: &Origin<'_>, case: &Case, options: &Options) -> Mismatch {
         let Difference { map, index } = self.difference;
         let exact = self.job.with_precision(Precision::Exact);
-        let stored = |job: &Job, baker: &Baker| {
-            let answers = job.run(baker).ok()?;
-            let answer = answers.get(map)?;
-            Some(Stored { number: answer.number(index), bits: answer.bits(index) })
-        };
         let reference = exact.run(&Baker::reference()).unwrap_or_default();
         let answer = reference.get(map);
+        let stored = |answer: &Answer| Stored { number: answer.number(index), bits: answer.bits(index) };
+        let said_by = |baker: &Baker| self.job.run(baker).ok()?.get(map).map(stored);
         Mismatch {
             case: case.name.clone(),
             input: self.job.input(),
             place: answer.map(|answer| place(answer, index)).unwrap_or_default(),
-            device: stored(&self.job, origin.baker),
-            cpu: stored(&self.job, &Baker::cpu()),
-            specification: stored(&exact, &Baker::reference()),
+            device: said_by(origin.baker),
+            cpu: said_by(&Baker::cpu()),
+            specification: answer.map(stored),
             oracle: self.job.real(map, index).map(|real| OracleAnswer {
                 component: real.to_string(),
                 bits: answer.and_then(|answer| real.code(answer.format)),

@@ -114,8 +114,8 @@ impl Subject {
     /// Runs every case that the options mean and compares each answer with the specification's.
     ///
     /// # Errors
-    /// [`crate::Error::Parameter`] if the options mean no case; [`crate::Error::Cancelled`] if the monitor says so. What the device
-    /// does wrong is no error, but in the report.
+    /// [`crate::Error::Parameter`] if the options mean no case; [`crate::Error::Cancelled`] if the monitor says so. What
+    /// the device does wrong is no error, but in the report.
     pub fn verify(
         &self,
         options: &Options,

@@ -12,20 +12,9 @@ use crate::map::{
 };
 use crate::ops::Precision;
 use crate::ops::bake::{BakeOptions, BakePlan, Filter, NormalOptions, ParallaxOptions};
+use crate::split_mix::SplitMix;
 use crate::stream::{CodeSink, MapBands, MapSink};
 use crate::{Rational, Scale};
-
-/// Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014.
-struct SplitMix(u64);
-
-impl SplitMix {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
-    }
-}
 
 /// Heights of the three types: the same codes for all that can hold them.
 fn maps([width, height]: [usize; 2], mut height_at: impl FnMut(usize, usize) -> u16) -> [HeightMap; 3] {
@@ -122,7 +111,7 @@ const SIZES: [[usize; 2]; 9] = [[1, 1], [1, 9], [9, 1], [2, 2], [3, 5], [31, 37]
 #[test]
 fn every_format_of_random_heights() {
     let mut random = SplitMix(1);
-    for map in maps([300, 7], |_, _| random.next() as u16) {
+    for map in maps([300, 7], |_, _| random.bits() as u16) {
         for format in formats() {
             for text in ["1", "24", "-0.35", "0.001"] {
                 assert_same_bytes(&map, &NormalOptions { scale: scale(text), format, ..NormalOptions::default() });
@@ -135,7 +124,7 @@ fn every_format_of_random_heights() {
 fn every_edge_and_filter_at_every_size() {
     let mut random = SplitMix(2);
     for size in SIZES {
-        for map in maps(size, |_, _| random.next() as u16) {
+        for map in maps(size, |_, _| random.bits() as u16) {
             for filter in [Filter::Central, Filter::Sobel, Filter::Scharr, Filter::Prewitt] {
                 for x in [Edge::Wrap, Edge::Clamp, Edge::Mirror] {
                     for y in [Edge::Wrap, Edge::Clamp, Edge::Mirror] {
@@ -159,7 +148,7 @@ fn ties() {
     let mut random = SplitMix(3);
     // Levels M/15 apart: slopes of n/2, n/4 and the like on both axes for the scales below.
     for step in [255 / 15, 65535 / 15] {
-        for map in maps([131, 40], |_, _| (random.next() % 16) as u16 * step) {
+        for map in maps([131, 40], |_, _| (random.bits() % 16) as u16 * step) {
             for text in ["15", "30", "15/2", "10", "20", "45/2", "-45", "40", "12", "30/7", "360/7", "16777215"] {
                 for format in formats() {
                     assert_same_bytes(&map, &NormalOptions { scale: scale(text), format, ..NormalOptions::default() });
@@ -199,7 +188,7 @@ fn the_comparison_sees_one_code() {
 fn gentle_and_flat_and_steep() {
     let mut random = SplitMix(4);
     let flat = maps([97, 5], |_, _| 200);
-    let gentle = maps([97, 5], |_, _| 100 + (random.next() % 3) as u16);
+    let gentle = maps([97, 5], |_, _| 100 + (random.bits() % 3) as u16);
     let ramps = maps([97, 5], |x, y| (x * 3 + y * 50) as u16);
     for map in flat.iter().chain(&gentle).chain(&ramps) {
         for text in ["0", "1/16777215", "0.0001", "0.35", "1000", "16777215", "-16777215", "16777213/16777215"] {
@@ -217,7 +206,7 @@ fn gentle_and_flat_and_steep() {
 #[test]
 fn physical_scales() {
     let mut random = SplitMix(5);
-    for map in maps([64, 9], |_, _| random.next() as u16) {
+    for map in maps([64, 9], |_, _| random.bits() as u16) {
         let scale = Scale::physical("2".parse().unwrap(), "0.7".parse().unwrap(), "0.1".parse().unwrap());
         for format in formats() {
             assert_same_bytes(&map, &NormalOptions { scale, format, ..NormalOptions::default() });
@@ -230,12 +219,12 @@ fn extreme_floats() {
     let mut random = SplitMix(6);
     let size = [211, 6];
     let any_finite = floats(size, |_, _| {
-        let bits = random.next() as u32;
+        let bits = random.bits() as u32;
         if f32::from_bits(bits).is_finite() { f32::from_bits(bits) } else { f32::MAX }
     });
-    let subnormal = floats(size, |_, _| f32::from_bits(random.next() as u32 & 0x807f_ffff));
-    let greatest = floats(size, |_, _| if random.next() & 1 == 0 { f32::MAX } else { -f32::MAX });
-    let zeros = floats(size, |_, _| if random.next() & 1 == 0 { 0.0 } else { -0.0 });
+    let subnormal = floats(size, |_, _| f32::from_bits(random.bits() as u32 & 0x807f_ffff));
+    let greatest = floats(size, |_, _| if random.bits() & 1 == 0 { f32::MAX } else { -f32::MAX });
+    let zeros = floats(size, |_, _| if random.bits() & 1 == 0 { 0.0 } else { -0.0 });
     for map in [any_finite, subnormal, greatest, zeros] {
         for text in ["0", "1", "-24", "1/16777215", "16777215"] {
             for format in formats() {
@@ -252,7 +241,7 @@ fn extreme_floats() {
 fn neither_threads_nor_bands_change_a_byte() {
     let mut random = SplitMix(7);
     // Wide enough for several strips in a band.
-    for map in &maps([4099, 61], |_, _| random.next() as u16) {
+    for map in &maps([4099, 61], |_, _| random.bits() as u16) {
         for precision in [Precision::Exact, Precision::Fast] {
             let options = NormalOptions { scale: scale("24"), precision, ..NormalOptions::default() };
             let expected = baked(&Cpu::with_threads(1).unwrap(), map, &options, 61);
@@ -272,7 +261,7 @@ fn neither_threads_nor_bands_change_a_byte() {
 #[test]
 fn fast_is_next_to_exact() {
     let mut random = SplitMix(8);
-    let [bytes, words, _] = maps([512, 64], |_, _| random.next() as u16);
+    let [bytes, words, _] = maps([512, 64], |_, _| random.bits() as u16);
     for map in [bytes, words] {
         for format in formats() {
             for text in ["1", "24", "0.01"] {

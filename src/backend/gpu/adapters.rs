@@ -35,13 +35,13 @@ pub(super) fn meant(selector: Option<&str>) -> Vec<Adapter> {
 /// # Errors
 /// [`Error::Device`] names the adapters that there are.
 pub(super) fn select(selector: Option<&str>) -> Result<Adapter> {
-    let adapters = all();
-    let names: Vec<String> = adapters.iter().map(|adapter| describe(&adapter.get_info())).collect();
-    let matches = |adapter: &Adapter| selector.is_none_or(|selector| is_meant(&adapter.get_info(), selector));
-    let asked_for = selector.map_or("gpu".into(), |selector| format!("adapter {selector:?}"));
-    adapters.into_iter().find(matches).ok_or_else(|| match names.len() {
-        0 => Error::device(asked_for, "this machine has no adapter that runs compute kernels; use --backend cpu"),
-        _ => Error::device(asked_for, format_args!("there is none; there are: {}", names.join("; "))),
+    meant(selector).into_iter().next().ok_or_else(|| {
+        let asked_for = selector.map_or("gpu".into(), |selector| format!("adapter {selector:?}"));
+        let names: Vec<String> = all().iter().map(|adapter| describe(&adapter.get_info())).collect();
+        match names.len() {
+            0 => Error::device(asked_for, "this machine has no adapter that runs compute kernels; use --backend cpu"),
+            _ => Error::device(asked_for, format_args!("there is none; there are: {}", names.join("; "))),
+        }
     })
 }
 

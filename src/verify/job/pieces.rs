@@ -72,14 +72,12 @@ pub(super) fn simpler_heights(map: &HeightMap) -> Vec<HeightMap> {
     }
     let of = "as many as before, and finite";
     match map.heights() {
-        Heights::U8(heights) => replaced(heights, |value| simpler_integers(value.into()).map(|it| it as u8).collect())
+        Heights::U8(heights) => replaced(heights, simpler_bytes)
             .map(|heights| Grid::new(width, height, heights).expect(of).into())
             .collect(),
-        Heights::U16(heights) => {
-            replaced(heights, |value| simpler_integers(value.into()).map(|it| it as u16).collect())
-                .map(|heights| Grid::new(width, height, heights).expect(of).into())
-                .collect()
-        }
+        Heights::U16(heights) => replaced(heights, simpler_words)
+            .map(|heights| Grid::new(width, height, heights).expect(of).into())
+            .collect(),
         Heights::F32(heights) => replaced(heights, |value| simpler_floats(value).collect())
             .map(|heights| HeightMap::try_from(Grid::new(width, height, heights).expect(of)).expect(of))
             .collect(),
@@ -92,12 +90,8 @@ pub(super) fn simpler_normals(map: &NormalMap) -> Vec<NormalMap> {
         return Vec::new();
     }
     let codes: Vec<Codes> = match map.codes() {
-        CodesRef::U8(codes) => replaced(codes, |value| simpler_integers(value.into()).map(|it| it as u8).collect())
-            .map(Codes::U8)
-            .collect(),
-        CodesRef::U16(codes) => replaced(codes, |value| simpler_integers(value.into()).map(|it| it as u16).collect())
-            .map(Codes::U16)
-            .collect(),
+        CodesRef::U8(codes) => replaced(codes, simpler_bytes).map(Codes::U8).collect(),
+        CodesRef::U16(codes) => replaced(codes, simpler_words).map(Codes::U16).collect(),
         CodesRef::F16(codes) => replaced(codes, |value| {
             simpler_floats(value.to_f32()).map(f16::from_f32).filter(|simpler| *simpler != value).collect()
         })
@@ -110,6 +104,14 @@ pub(super) fn simpler_normals(map: &NormalMap) -> Vec<NormalMap> {
 
 /// Values of larger maps are not simplified: cuts come first.
 const FEW: usize = 25;
+
+fn simpler_bytes(value: u8) -> Vec<u8> {
+    simpler_integers(value.into()).map(|simpler| simpler as u8).collect()
+}
+
+fn simpler_words(value: u16) -> Vec<u16> {
+    simpler_integers(value.into()).map(|simpler| simpler as u16).collect()
+}
 
 /// Lists with one value replaced by a simpler one.
 pub(super) fn replaced<T: Copy>(values: &[T], simpler: impl Fn(T) -> Vec<T>) -> impl Iterator<Item = Vec<T>> {

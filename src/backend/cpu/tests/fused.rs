@@ -35,7 +35,7 @@ fn assert_alone_and_fused(
 #[test]
 fn every_mix_of_formats() {
     let mut random = SplitMix(11);
-    for map in maps([131, 9], |_, _| random.next() as u16) {
+    for map in maps([131, 9], |_, _| random.bits() as u16) {
         for text in ["24", "-0.35"] {
             let options = BakeOptions { scale: scale(text), ..BakeOptions::default() };
             assert_alone_and_fused(&map, &options, &formats(), &parallax_formats());
@@ -50,7 +50,7 @@ fn every_size_edge_and_filter() {
     let [words, bytes] =
         [Depth::Bits16, Depth::Bits8].map(|depth| ParallaxFormat { depth, ..ParallaxFormat::default() });
     for width in [1, 2, 63, 64, 65, 511, 512, 513, 577, 1031] {
-        for map in maps([width, 3], |_, _| random.next() as u16) {
+        for map in maps([width, 3], |_, _| random.bits() as u16) {
             for filter in [Filter::Central, Filter::Sobel, Filter::Scharr, Filter::Prewitt] {
                 for x in [Edge::Wrap, Edge::Clamp, Edge::Mirror] {
                     let edges = Edges { x, y: Edge::Clamp };
@@ -67,7 +67,7 @@ fn every_size_edge_and_filter() {
 fn ties() {
     let mut random = SplitMix(13);
     for step in [255 / 15, 65535 / 15] {
-        for map in maps([131, 20], |_, _| (random.next() % 16) as u16 * step) {
+        for map in maps([131, 20], |_, _| (random.bits() % 16) as u16 * step) {
             for text in ["15", "30", "15/2", "10", "45/2", "-45", "40", "360/7", "16777215", "0"] {
                 let options = BakeOptions { scale: scale(text), ..BakeOptions::default() };
                 assert_alone_and_fused(&map, &options, &[NormalFormat::default()], &parallax_formats());
@@ -98,9 +98,9 @@ fn steep_and_flat_and_extreme() {
     let mut random = SplitMix(14);
     let size = [97, 5];
     let flat = maps(size, |_, _| 200);
-    let edge_codes = maps(size, |_, _| if random.next() & 1 == 0 { 0 } else { u16::MAX });
+    let edge_codes = maps(size, |_, _| if random.bits() & 1 == 0 { 0 } else { u16::MAX });
     let any_finite = floats(size, |_, _| {
-        let bits = random.next() as u32;
+        let bits = random.bits() as u32;
         if f32::from_bits(bits).is_finite() { f32::from_bits(bits) } else { f32::MAX }
     });
     let half = floats(size, |_, _| 0.5);
@@ -116,7 +116,7 @@ fn steep_and_flat_and_extreme() {
 #[test]
 fn fast_parallax_is_next_to_exact() {
     let mut random = SplitMix(15);
-    let [bytes, words, _] = maps([512, 16], |_, _| random.next() as u16);
+    let [bytes, words, _] = maps([512, 16], |_, _| random.bits() as u16);
     for map in [bytes, words] {
         for format in parallax_formats() {
             let exact = ParallaxOptions { scale: scale("24"), format, ..ParallaxOptions::default() };
@@ -131,7 +131,7 @@ fn fast_parallax_is_next_to_exact() {
 #[test]
 fn neither_threads_nor_bands_change_a_byte() {
     let mut random = SplitMix(16);
-    let [_, map, _] = maps([4099, 40], |_, _| random.next() as u16);
+    let [_, map, _] = maps([4099, 40], |_, _| random.bits() as u16);
     let parallax = Some(ParallaxFormat { depth: Depth::Bits16, ..ParallaxFormat::default() });
     let options = BakeOptions { scale: scale("24"), parallax, ..BakeOptions::default() };
     let expected = baked_maps(&Reference, &map, &options, 40);

@@ -20,13 +20,13 @@ fn normals(random: &mut SplitMix, size: Size, format: NormalFormat) -> Codes {
 fn code(random: &mut SplitMix, bits: u32) -> u16 {
     let [half, greatest] = [1u32 << (bits - 1), (1 << bits) - 1];
     let ends = [0, 1, half - 1, half, half + 1, greatest - 1, greatest, half / 2];
-    let number = random.next();
+    let number = random.bits();
     (if number.is_multiple_of(4) { ends[(number >> 8) as usize % 8] } else { (number >> 32) as u32 & greatest }) as u16
 }
 
 fn component(random: &mut SplitMix, greatest: f32) -> f32 {
     let ends = [0.0, -0.0, 1.0, -1.0, greatest, -greatest, 2f32.powi(-24), f32::from_bits(1)];
-    let number = random.next();
+    let number = random.bits();
     let inside = (number >> 40) as f32 / (1 << 23) as f32 - 1.0;
     if number.is_multiple_of(4) { ends[(number >> 8) as usize % 8] } else { inside }
 }
@@ -112,7 +112,7 @@ fn every_method_in_every_mix_of_formats() {
         for (method, mask) in methods() {
             // Every format meets this one in one role or the other.
             for _ in 0..3 {
-                let mut any = || formats[random.next() as usize % formats.len()];
+                let mut any = || formats[random.bits() as usize % formats.len()];
                 let (detail, format) = (any(), any());
                 let options = BlendOptions { method, format, ..BlendOptions::default() };
                 assert_same_blend(size, &Layers::new(&mut random, size, [*base, detail], mask), &options);
@@ -171,7 +171,7 @@ fn ties() {
         [[1i8, 2, 2], [2, 1, 2], [-2, 2, 1], [3, 0, 4], [0, -3, 4], [2, 3, 6], [4, 4, 7], [0, 0, 9], [-12, 0, 5]];
     let mut random = SplitMix(24);
     let mut codes = || {
-        let texels = (0..size.texels()).flat_map(|_| parts[random.next() as usize % parts.len()]);
+        let texels = (0..size.texels()).flat_map(|_| parts[random.bits() as usize % parts.len()]);
         Codes::U8(texels.map(|part| part as u8).collect())
     };
     let formats = [snorm(Depth::Bits8); 2];
@@ -226,7 +226,7 @@ fn neither_threads_nor_bands_change_a_byte() {
 #[test]
 fn fast_is_next_to_exact() {
     let mut random = SplitMix(26);
-    let [_, heights, _] = maps([512, 16], |_, _| random.next() as u16);
+    let [_, heights, _] = maps([512, 16], |_, _| random.bits() as u16);
     for input in formats().into_iter().filter(|format| !format.depth.is_float()) {
         let bake = |text| {
             let options = NormalOptions { scale: scale(text), format: input, ..NormalOptions::default() };

@@ -19,14 +19,14 @@ struct Kind {
 
 /// From -1 to 1.
 fn number(random: &mut SplitMix) -> f32 {
-    (random.next() >> 40) as f32 / (1 << 23) as f32 - 1.0
+    (random.bits() >> 40) as f32 / (1 << 23) as f32 - 1.0
 }
 
 fn coordinate(random: &mut SplitMix, kind: Kind) -> f32 {
     let special = [0.0, -0.0, 1.0, -1.0, 2f32.powi(-22), f32::from_bits(1)];
-    match random.next() % 8 {
-        0 => special[(random.next() % 6) as usize] * kind.greatest.min(1.0),
-        _ if kind.is_spread => number(random) * kind.greatest * 2f32.powi(-((random.next() % 140) as i32)),
+    match random.bits() % 8 {
+        0 => special[(random.bits() % 6) as usize] * kind.greatest.min(1.0),
+        _ if kind.is_spread => number(random) * kind.greatest * 2f32.powi(-((random.bits() % 140) as i32)),
         _ => number(random) * kind.greatest,
     }
 }
@@ -37,7 +37,7 @@ fn vector<const N: usize>(random: &mut SplitMix, kind: Kind) -> [f32; N] {
 
 /// One triangle in eight has two equal vertices, one vertex in eight another's position or texture coordinate.
 fn mesh(random: &mut SplitMix, kind: Kind) -> Mesh {
-    let vertex = |random: &mut SplitMix| (random.next() % kind.vertices as u64) as u32;
+    let vertex = |random: &mut SplitMix| (random.bits() % kind.vertices as u64) as u32;
     let mut positions: Vec<[f32; 3]> = (0..kind.vertices).map(|_| vector(random, kind)).collect();
     let mut texcoords: Vec<[f32; 2]> = (0..kind.vertices).map(|_| vector(random, kind)).collect();
     let unit = Kind { greatest: 1.0, is_spread: false, ..kind };
@@ -51,7 +51,7 @@ fn mesh(random: &mut SplitMix, kind: Kind) -> Mesh {
         if kind.is_fan {
             a = 0;
         }
-        if random.next().is_multiple_of(8) { [a, b, b] } else { [a, b, c] }
+        if random.bits().is_multiple_of(8) { [a, b, b] } else { [a, b, c] }
     };
     let triangles = (0..kind.triangles).map(|_| triangle(random)).collect();
     Mesh::new(positions, texcoords, triangles).unwrap().with_normals(normals).unwrap()
