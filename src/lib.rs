@@ -26,7 +26,7 @@
 //! - [`Baker::tangents`] computes the tangents of a [`Mesh`]; [`io::Model`] reads meshes from glTF and OBJ files, and
 //!   writes them with tangents.
 //! - [`inspect`] finds what is wrong with a normal map, mends it, and compares two.
-//! - [`shading`] has the twins of what a shader does with the maps.
+//! - [`shading`] has the twins of what a shader does with the maps, [`material`] samples them as a scene does.
 #![cfg_attr(feature = "gpu", doc = "- [`gpu::Hosted`] bakes on the caller's own wgpu device, without a readback.")]
 //!
 //! # What is held in memory
@@ -135,12 +135,15 @@ pub mod gpu {
 pub mod inspect;
 pub mod io;
 mod map;
+pub mod material;
+pub mod measure;
 mod mesh;
 mod names;
 mod ops;
 pub mod shading;
 mod split_mix;
 pub mod stream;
+mod vector;
 pub mod verify;
 
 pub use baker::{Baked, Baker, Blended, Ran};

@@ -1,7 +1,8 @@
 //! What is decided, and counted, for each triangle alone.
 
 use super::pieces::of_pieces_mut;
-use super::{BLOCK, Surface, Triangles, cross, is_zero, scaled_to_one};
+use super::{BLOCK, Surface, Triangles, is_zero, scaled_to_one};
+use crate::vector::cross;
 
 /// The handedness of every triangle, and how many have none.
 #[derive(Debug, Clone, PartialEq, Eq)]

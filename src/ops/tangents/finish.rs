@@ -2,10 +2,11 @@
 
 use super::pieces::{of_pieces, of_pieces_mut};
 use super::seams::weld_seams;
-use super::{Faces, Fans, Shading, TangentOptions, cross, is_zero, project, times, unit};
+use super::{Faces, Fans, Shading, TangentOptions, is_zero, project, unit};
 use crate::error::{Error, Result};
 use crate::map::Convention;
 use crate::mesh::Mesh;
+use crate::vector::{cross, times};
 use std::borrow::Cow;
 use std::iter::Sum;
 

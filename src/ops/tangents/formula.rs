@@ -6,6 +6,7 @@
 use super::{TangentMethod, TriangleEdges};
 use crate::exact::acos;
 use crate::ops::bake::zero_below;
+use crate::vector::{add, cross, dot, sub, times};
 
 /// What a triangle gives to each of its corners: the direction in which u grows, and that in which v grows.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -183,31 +184,6 @@ pub(crate) fn scaled_to_one(v: [f32; 3]) -> [f32; 3] {
 
 const MAGNITUDE: u32 = 0x7fff_ffff;
 const EXPONENT: u32 = 0x7f80_0000;
-
-#[inline(always)]
-pub(crate) fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
-    (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
-}
-
-#[inline(always)]
-pub(crate) fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-#[inline(always)]
-pub(crate) fn add(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-#[inline(always)]
-pub(crate) fn sub(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-pub(crate) fn times(factor: f32, v: [f32; 3]) -> [f32; 3] {
-    [factor * v[0], factor * v[1], factor * v[2]]
-}
 
 /// Bits that equal vectors have in common: minus zero is zero.
 pub(crate) fn bits_of_value(v: [f32; 3]) -> [u32; 3] {

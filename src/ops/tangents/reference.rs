@@ -1,8 +1,9 @@
 //! The specification: one fan after the other, in plain code.
 
 use super::{
-    Frame, FrameSum, Surface, TangentMethod, TangentPlan, add, frame, mikktspace_area, mikktspace_share, sign, unit,
+    Frame, FrameSum, Surface, TangentMethod, TangentPlan, frame, mikktspace_area, mikktspace_share, sign, unit,
 };
+use crate::vector::add;
 
 /// The tangent of each fan, and its handedness as to growing v; zero where no direction is left.
 pub(crate) fn tangents_of_fans(plan: &TangentPlan<'_>, tangents: &mut [[f32; 4]]) {

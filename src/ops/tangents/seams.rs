@@ -1,8 +1,9 @@
 //! Duplicates at one position whose tangents are nearly equal become equal (FGED2, end of section 7.5).
 
 use super::finish::Vertices;
-use super::{add, bits_of_value, dot, project, sub, unit};
+use super::{bits_of_value, project, unit};
 use crate::mesh::Mesh;
+use crate::vector::{add, dot, sub};
 use std::collections::HashMap;
 
 /// Averages the tangents of vertices that have position and handedness in common and whose tangents and normals lie at

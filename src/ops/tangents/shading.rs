@@ -2,8 +2,9 @@
 
 use super::pieces::of_pieces;
 use super::surface::scale;
-use super::{MissingNormals, add, bits_of_value, cross, dot, is_zero, sub, times, unit};
+use super::{MissingNormals, bits_of_value, is_zero, unit};
 use crate::mesh::{CornerAdjacency, Mesh};
+use crate::vector::{add, cross, dot, sub, times};
 use std::borrow::Cow;
 use std::collections::HashMap;
 

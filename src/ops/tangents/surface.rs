@@ -1,8 +1,9 @@
 //! A mesh as the formulas see it: at one scale, with a normal for every vertex.
 
+use super::mikktspace_area;
 use super::pieces::of_pieces;
-use super::{mikktspace_area, sub, times};
 use crate::mesh::Mesh;
+use crate::vector::{sub, times};
 
 /// A mesh at a scale of which no formula overflows.
 ///

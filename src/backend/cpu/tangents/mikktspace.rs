@@ -8,8 +8,9 @@ use super::fill_blocks;
 use crate::exact::{acos, acos_estimate, is_in_doubt};
 use crate::ops::tangents::{
     BLOCK, Fans, Plane, Surface, TangentMethod, TangentPlan, Triangles, frame, mikktspace_area, mikktspace_cosine,
-    project, sign, times, unit,
+    project, sign, unit,
 };
+use crate::vector::times;
 
 /// Where the shares of a block of corners are computed.
 struct Room {

@@ -2,7 +2,8 @@
 
 use super::Surface;
 use crate::ops::tangents::pieces::of_pieces_mut;
-use crate::ops::tangents::{BLOCK, TangentMethod, Triangles, dot, frame, is_zero, mikktspace_area, project};
+use crate::ops::tangents::{BLOCK, TangentMethod, Triangles, frame, is_zero, mikktspace_area, project};
+use crate::vector::dot;
 
 /// A triangle, in eight bytes: a fan reads those of all its corners.
 #[derive(Debug, Clone, Copy)]

@@ -1,7 +1,8 @@
 //! Subgroups: within a group, faces of exactly opposite directions do not contribute to each other's tangents.
 
 use super::Surface;
-use crate::ops::tangents::{TangentMethod, dot, frame, project, unit};
+use crate::ops::tangents::{TangentMethod, frame, project, unit};
+use crate::vector::dot;
 use std::collections::HashMap;
 
 /// A corner of a group.
