@@ -140,6 +140,8 @@ pub mod measure;
 mod mesh;
 mod names;
 mod ops;
+#[cfg(feature = "cli")]
+pub mod preview;
 pub mod shading;
 mod split_mix;
 pub mod stream;

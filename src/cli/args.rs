@@ -20,6 +20,7 @@ Examples:
   texbake parallax height.png -o parallax.png --scale 24 --json
   texbake blend base_normal.png detail_normal.png -o normal.png --tile
   texbake tangents model.glb -o model_t.glb
+  texbake preview height.png -o sheet.png --scale 24
   texbake devices
   texbake verify
 
@@ -39,6 +40,7 @@ pub enum Command {
     Tangents(Box<super::tangents::TangentsArguments>),
     Check(Box<super::check::CheckArguments>),
     Diff(Box<super::diff::DiffArguments>),
+    Preview(Box<super::preview::PreviewArguments>),
     Devices(DevicesArguments),
     Verify(Box<super::verify::VerifyArguments>),
 }

@@ -10,6 +10,7 @@ mod diff;
 mod exit;
 mod normal;
 mod parallax;
+mod preview;
 mod print;
 mod progress;
 mod settings;
@@ -38,6 +39,7 @@ pub fn run() -> ExitCode {
         Command::Check(arguments) => check::check(arguments),
         Command::Diff(arguments) => diff::diff(arguments),
         Command::Devices(arguments) => devices::devices(arguments),
+        Command::Preview(arguments) => preview::preview(arguments),
         Command::Verify(arguments) => verify::verify(arguments),
     };
     let exit = done.unwrap_or_else(|failure| {
