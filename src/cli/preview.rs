@@ -4,7 +4,7 @@ use super::check::{create_folder_of, is_same_file};
 use super::exit::{Exit, Failure};
 use super::interruptible;
 use super::print::{put, say};
-use super::settings::{Settings, open_baker};
+use super::settings::{Backend, Settings, open_baker};
 use super::values::{USUAL_ITERATIONS, iterations};
 use clap::Args;
 use std::num::NonZeroU32;
@@ -54,7 +54,7 @@ pub struct PreviewArguments {
     #[arg(long, value_name = "TEXELS", value_parser = above_zero, help_heading = PICTURE)]
     pub across: Option<f32>,
 
-    /// Error that is white, in texels [default: half of --scale, the greatest height above the plane]
+    /// Error that is white, in texels [default: the longest offset that the relief can have, for each elevation]
     #[arg(long, value_name = "TEXELS", value_parser = above_zero, help_heading = PICTURE)]
     pub error_max: Option<f32>,
 
@@ -93,7 +93,7 @@ pub fn preview(arguments: &PreviewArguments) -> Result<Exit, Failure> {
 }
 
 fn sheet(arguments: &PreviewArguments, monitor: &Monitor) -> Result<Exit, Failure> {
-    let renderer = Renderer::Cpu;
+    let renderer = renderer(&arguments.settings)?;
     let material = material(arguments)?;
     let options = arguments.sheet_options(&material);
     let sheet = Sheet::render(&material, &options, &renderer, monitor)?;
@@ -105,9 +105,20 @@ fn sheet(arguments: &PreviewArguments, monitor: &Monitor) -> Result<Exit, Failur
     if !arguments.quiet {
         put(lines(&sheet));
         let size = sheet.picture.size();
-        say(format_args!("{}: {size} pixels; {}", arguments.output.display(), renderer.name()));
+        renderer.fallback().iter().for_each(|reason| say(format_args!("warning: {reason}; the CPU did it instead")));
+        let (name, reason) = (renderer.name(), renderer.reason());
+        say(format_args!("{}: {size} pixels; {name} ({reason})", arguments.output.display()));
     }
     Ok(Exit::Success)
+}
+
+/// What renders it.
+fn renderer(settings: &Settings) -> Result<Renderer> {
+    match settings.device.place()? {
+        (Backend::Auto, _) => Ok(Renderer::auto()),
+        (Backend::Cpu | Backend::Reference, _) => Ok(Renderer::cpu()),
+        (Backend::Gpu, adapter) => Renderer::gpu(adapter.as_deref()),
+    }
 }
 
 /// The material that is baked of the height map.

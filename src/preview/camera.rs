@@ -16,7 +16,7 @@ pub struct Camera {
 }
 
 /// Degrees between the middle of a picture and its upper border, at most: a long lens.
-const HALF_FIELD: f32 = 10.0;
+const HALF_FIELD: f32 = 8.0;
 
 /// The rays from a camera's eye, in tangent space: x along growing u, y along growing v, z out of the plane, in units of
 /// the map's width.

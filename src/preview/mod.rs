@@ -7,6 +7,8 @@
 //! Colours are linear light until a [`Picture`] makes sRGB of them.
 
 mod camera;
+#[cfg(feature = "gpu")]
+pub(crate) mod gpu;
 mod labels;
 mod look;
 mod picture;

@@ -103,8 +103,7 @@ impl Picture {
 /// The code of a linear component (IEC 61966-2-1).
 fn to_srgb(linear: f32) -> u8 {
     let linear = f64::from(linear).clamp(0.0, 1.0);
-    let encoded =
-        if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 };
+    let encoded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 };
     (255.0 * encoded).round() as u8
 }
 

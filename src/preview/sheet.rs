@@ -20,7 +20,7 @@ pub struct SheetOptions {
     pub elevations: Vec<f32>,
     /// How much of the map's width is seen; `None`: ten times what is between the lowest and the highest, or all of it.
     pub width: Option<f32>,
-    /// Error that is white, in texels; `None`: what is between the plane and the highest.
+    /// Error that is white, in texels; `None`: the longest offset that relief can have, in the middle of a panel.
     pub white: Option<f32>,
     /// Width and height of a panel in pixels.
     pub panel: [u32; 2],
@@ -52,10 +52,11 @@ impl SheetOptions {
         [Surface::Flat].into_iter().chain(mapped).chain([Surface::Truth]).collect()
     }
 
-    fn white(&self, material: &Material) -> f32 {
-        let highest = highest(material) / 2.0;
+    fn white(&self, material: &Material, elevation: f32) -> f32 {
+        // From straight above there is none; then it is how far the highest is above the plane.
+        let longest = highest(material) / 2.0 / elevation.to_radians().tan().min(1.0);
         // Of a map without relief every scale paints black.
-        self.white.unwrap_or(if highest > 0.0 { highest } else { 1.0 })
+        self.white.unwrap_or(if longest > 0.0 { longest } else { 1.0 })
     }
 
     fn camera(&self, material: &Material, elevation: f32) -> Camera {
@@ -77,8 +78,6 @@ pub struct Sheet {
     pub picture: Picture,
     /// What it tells in numbers, row by row.
     pub told: Vec<Told>,
-    /// The error that is white, in texels, if errors are painted.
-    pub white: Option<f32>,
 }
 
 /// The errors of a panel.
@@ -108,18 +107,13 @@ impl Sheet {
     /// # Errors
     /// [`crate::Error::Parameter`] if the picture has no pixels, or too many; [`crate::Error::Device`] if a GPU fails;
     /// [`crate::Error::Cancelled`] if `monitor` says so.
-    pub fn render(
-        material: &Material,
-        options: &SheetOptions,
-        renderer: &Renderer,
-        monitor: &Monitor,
-    ) -> Result<Self> {
+    pub fn render(material: &Material, options: &SheetOptions, renderer: &Renderer, monitor: &Monitor) -> Result<Self> {
         let has_truth = options.surfaces.contains(&Surface::Truth);
         let plan = Plan { options, has_truth };
         let mut picture = Picture::filled(plan.size(), PAPER)?;
-        let white = options.white(material);
         let mut told = Vec::new();
         for (row, &elevation) in options.elevations.iter().enumerate() {
+            let white = options.white(material, elevation);
             let take = |surface| {
                 let camera = options.camera(material, elevation);
                 let count = options.panel.map(|pixels| pixels * SAMPLES);
@@ -134,17 +128,15 @@ impl Sheet {
                 picture.paste(&plan.pixels(&samples)?, plan.panel(row, column));
                 let Some(truth) = &truth else { continue };
                 let errors = errors(material, &samples, truth);
-                if surface != Surface::Flat {
-                    picture.paste(&plan.heat(&errors, white)?, plan.heat_panel(row, column));
+                match surface {
+                    Surface::Flat => picture.paste(&plan.ramp()?, plan.legend(row, column)),
+                    _ => picture.paste(&plan.heat(&errors, white)?, plan.heat_panel(row, column)),
                 }
                 told.push(Told { elevation, surface, errors: Errors::of(errors) });
             }
         }
-        if has_truth {
-            picture.paste(&ramp()?, plan.legend());
-        }
-        plan.label(&mut picture, &told, white)?;
-        Ok(Self { picture, told, white: has_truth.then_some(white) })
+        plan.label(material, &mut picture, &told)?;
+        Ok(Self { picture, told })
     }
 }
 
@@ -152,16 +144,8 @@ impl Sheet {
 fn errors(material: &Material, samples: &Samples, truth: &Samples) -> Vec<f32> {
     let size = material.size();
     let texels = [size.width() as f32, size.height() as f32];
-    let error =
-        |(a, b): (&[f32; 2], &[f32; 2])| ((a[0] - b[0]) * texels[0]).hypot((a[1] - b[1]) * texels[1]);
+    let error = |(a, b): (&[f32; 2], &[f32; 2])| ((a[0] - b[0]) * texels[0]).hypot((a[1] - b[1]) * texels[1]);
     samples.offsets.iter().zip(&truth.offsets).map(error).collect()
-}
-
-/// The colours of errors from none to white.
-fn ramp() -> Result<Picture> {
-    let ramp = Ramp::cubehelix();
-    let shares: Vec<[f32; 1]> = (0..12 * 200).map(|i| [(i % 200) as f32 / 199.0]).collect();
-    Picture::of_means(&shares, 200, 1, |[share]| ramp.colour(share.into()))
 }
 
 /// Where everything is.
@@ -178,15 +162,14 @@ impl Plan<'_> {
     /// Pixels of a row: heading, titles, pictures, heat maps, numbers.
     fn row_height(&self) -> usize {
         let height = self.panel_size()[1];
-        HEADING + LINE + height + if self.has_truth { GAP + height + LINE } else { 0 } + GAP
+        HEADING + LINE + height + if self.has_truth { GAP + height + LINE + 4 } else { 0 } + GAP
     }
 
     fn size(&self) -> [usize; 2] {
         let (rows, columns) = (self.options.elevations.len(), self.options.surfaces.len());
-        let legend = if self.has_truth { HEADING + GAP } else { 0 };
         [
             2 * MARGIN + columns * (self.panel_size()[0] + GAP) - GAP.min(columns * GAP),
-            2 * MARGIN + TITLE + rows * self.row_height() + legend,
+            2 * MARGIN + TITLE + rows * self.row_height(),
         ]
     }
 
@@ -203,8 +186,17 @@ impl Plan<'_> {
         [x, y + self.panel_size()[1] + GAP]
     }
 
-    fn legend(&self) -> [usize; 2] {
-        [MARGIN + 24, self.row(self.options.elevations.len()) + GAP]
+    /// What the colours of errors mean, in the place of a heat map of the flat surface.
+    fn legend(&self, row: usize, column: usize) -> [usize; 2] {
+        let [x, y] = self.heat_panel(row, column);
+        [x, y + self.panel_size()[1] / 2]
+    }
+
+    /// The colours of errors from none to white.
+    fn ramp(&self) -> Result<Picture> {
+        let (ramp, width) = (Ramp::cubehelix(), self.panel_size()[0] - 2 * GAP);
+        let shares: Vec<[f32; 1]> = (0..12 * width).map(|i| [(i % width) as f32 / width as f32]).collect();
+        Picture::of_means(&shares, width, 1, |[share]| ramp.colour(share.into()))
     }
 
     fn pixels(&self, samples: &Samples) -> Result<Picture> {
@@ -218,15 +210,12 @@ impl Plan<'_> {
         Picture::of_means(&samples, self.panel_size()[0] * SAMPLES as usize, SAMPLES as usize, colour)
     }
 
-    fn label(&self, picture: &mut Picture, told: &[Told], white: f32) -> Result<()> {
+    fn label(&self, material: &Material, picture: &mut Picture, told: &[Told]) -> Result<()> {
         let labels = Labels::on(picture)?;
         let [width, height] = self.panel_size();
         labels.text(&self.options.title, [MARGIN, MARGIN], 17, Anchor::Left, FontStyle::Bold)?;
-        for (row, elevation) in self.options.elevations.iter().enumerate() {
-            let heading = match self.has_truth {
-                true => format!("Seen from {elevation}° above the surface; beneath, how far offsets are from the truth, in texels"),
-                false => format!("Seen from {elevation}° above the surface"),
-            };
+        for (row, &elevation) in self.options.elevations.iter().enumerate() {
+            let heading = format!("Seen from {elevation}° above the surface");
             labels.text(&heading, [MARGIN, self.row(row) + 4], 14, Anchor::Left, FontStyle::Normal)?;
             for (column, surface) in self.options.surfaces.iter().enumerate() {
                 let [x, y] = self.panel(row, column);
@@ -234,25 +223,33 @@ impl Plan<'_> {
                 labels.text(&surface.to_string(), [middle, y - LINE], 13, Anchor::Middle, FontStyle::Bold)?;
                 if *surface == Surface::Flat {
                     self.sun(&labels, [x, y])?;
+                    if self.has_truth {
+                        let white = self.options.white(material, elevation);
+                        self.explain(&labels, self.legend(row, column), white)?;
+                    }
                 }
                 let told = told.get(row * self.options.surfaces.len() + column);
                 if let Some(Told { errors, .. }) = told.filter(|_| *surface != Surface::Flat) {
                     let text = format!("mean {:.2}, largest {:.1}", errors.mean, errors.largest);
-                    let below = self.heat_panel(row, column)[1] + height + 3;
+                    let below = self.heat_panel(row, column)[1] + height + 4;
                     labels.text(&text, [middle, below], 12, Anchor::Middle, FontStyle::Normal)?;
                 }
             }
         }
-        if self.has_truth {
-            let [x, y] = self.legend();
-            labels.text("0", [x - 6, y], 12, Anchor::Right, FontStyle::Normal)?;
-            let text = format!("{white:.1} texels and more");
-            labels.text(&text, [x + 206, y], 12, Anchor::Left, FontStyle::Normal)?;
-        }
         labels.finish()
     }
 
-    /// Where the light comes from, in the corner of a panel.
+    /// What the ramp at a place means.
+    fn explain(&self, labels: &Labels<'_>, [x, y]: [usize; 2], white: f32) -> Result<()> {
+        let right = x + self.panel_size()[0] - 2 * GAP;
+        for (line, text) in ["Error of the offsets", "in texels"].into_iter().enumerate() {
+            labels.text(text, [x, y - 2 * LINE - 4 + line * LINE], 12, Anchor::Left, FontStyle::Normal)?;
+        }
+        labels.text("0", [x, y + LINE], 12, Anchor::Left, FontStyle::Normal)?;
+        labels.text(&format!("{white:.1} and more"), [right, y + LINE], 12, Anchor::Right, FontStyle::Normal)
+    }
+
+    /// Where the light comes from, in the middle of a panel.
     fn sun(&self, labels: &Labels<'_>, [x, y]: [usize; 2]) -> Result<()> {
         let [width, height] = self.panel_size().map(|pixels| pixels as f32);
         let (sin, cos) = self.options.look.light.azimuth.to_radians().sin_cos();

@@ -90,13 +90,7 @@ impl Shot<'_> {
     }
 
     /// Colour and offset of a sample; `kernels/preview.wgsl` does the same.
-    fn sample(
-        &self,
-        rays: &Rays,
-        method: ParallaxMethod,
-        light: [f32; 3],
-        [x, y]: [u32; 2],
-    ) -> ([f32; 3], [f32; 2]) {
+    fn sample(&self, rays: &Rays, method: ParallaxMethod, light: [f32; 3], [x, y]: [u32; 2]) -> ([f32; 3], [f32; 2]) {
         let view = rays.at(x as f32 + 0.5, y as f32 + 0.5);
         let offset = self.material.offset(method, view.uv, view.eye);
         let uv = [view.uv[0] + offset[0], view.uv[1] + offset[1]];
