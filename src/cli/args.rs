@@ -41,6 +41,7 @@ pub enum Command {
     Diff(Box<super::diff::DiffArguments>),
     Devices(DevicesArguments),
     Verify(Box<super::verify::VerifyArguments>),
+    Measure(Box<super::measure::MeasureArguments>),
 }
 
 /// Bake one height map into a normal map

@@ -8,6 +8,7 @@ pub(crate) mod config;
 mod devices;
 mod diff;
 mod exit;
+mod measure;
 mod normal;
 mod parallax;
 mod print;
@@ -39,6 +40,7 @@ pub fn run() -> ExitCode {
         Command::Diff(arguments) => diff::diff(arguments),
         Command::Devices(arguments) => devices::devices(arguments),
         Command::Verify(arguments) => verify::verify(arguments),
+        Command::Measure(arguments) => measure::run(arguments),
     };
     let exit = done.unwrap_or_else(|failure| {
         print::say(format_args!("error: {failure}"));
