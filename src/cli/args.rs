@@ -43,6 +43,7 @@ pub enum Command {
     Preview(Box<super::preview::PreviewArguments>),
     Devices(DevicesArguments),
     Verify(Box<super::verify::VerifyArguments>),
+    Measure(Box<super::measure::MeasureArguments>),
 }
 
 /// Bake one height map into a normal map

@@ -8,6 +8,7 @@ pub(crate) mod config;
 mod devices;
 mod diff;
 mod exit;
+mod measure;
 mod normal;
 mod parallax;
 mod preview;
@@ -41,6 +42,7 @@ pub fn run() -> ExitCode {
         Command::Devices(arguments) => devices::devices(arguments),
         Command::Preview(arguments) => preview::preview(arguments),
         Command::Verify(arguments) => verify::verify(arguments),
+        Command::Measure(arguments) => measure::run(arguments),
     };
     let exit = done.unwrap_or_else(|failure| {
         print::say(format_args!("error: {failure}"));
