@@ -1,11 +1,11 @@
 //! The command line.
 
 use super::settings::{CodeChoice, Device, HeightInput, NormalOutput, Settings, Slope};
-use super::values::{ByteSize, WeightPair, choice, iterations, value};
+use super::values::{ByteSize, MapChoice, WeightPair, choice, iterations, value};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
-use texbake::batch::{MapKind, NameTemplate, OUTPUT_EXTENSIONS};
+use texbake::batch::{NameTemplate, OUTPUT_EXTENSIONS};
 use texbake::io::Channel;
 use texbake::{Channels, Convention, Depth, Encoding, Precision, Rational};
 
@@ -219,10 +219,10 @@ pub struct BakeArguments {
 /// What may differ from file to file in a folder.
 #[derive(Args, Debug, Clone, Default, PartialEq)]
 pub struct PerFile {
-    /// Maps to bake: normal, parallax or normal,parallax [default: normal]
-    #[arg(long, value_delimiter = ',', value_parser = choice::<MapKind>(MapKind::NAMES), help_heading = "Files")]
+    /// Maps to bake: normal, parallax or normal,parallax; none leaves the file out [default: normal]
+    #[arg(long, value_delimiter = ',', value_parser = choice::<MapChoice>(MapChoice::NAMES), help_heading = "Files")]
     #[arg(hide_possible_values = true)]
-    pub maps: Option<Vec<MapKind>>,
+    pub maps: Option<Vec<MapChoice>>,
 
     /// Output names; {stem} is the input's without suffix, {map} is normal or parallax, {size} the input's _2k or
     /// nothing [default: {stem}_{map}{size}]

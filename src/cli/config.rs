@@ -250,11 +250,15 @@ mod tests {
 
     #[test]
     fn maps_are_text_or_a_list() {
-        use texbake::batch::MapKind::{Normal, Parallax};
+        use crate::cli::values::MapChoice::{Map, None};
+        use texbake::batch::MapKind;
+        let (normal, parallax) = (Map(MapKind::Normal), Map(MapKind::Parallax));
         let config = "[defaults]\nmaps = 'parallax,normal'\n[[override]]\nglob = 'a'\nmaps = ['normal', 'parallax']\n\
-                      [[override]]\nglob = 'b'\nmaps = ['parallax']\n";
+                      [[override]]\nglob = 'b'\nmaps = ['parallax']\n[[override]]\nglob = 'd'\nmaps = 'none'\n";
         let config = parse(config).unwrap();
-        for (name, maps) in [("a", vec![Normal, Parallax]), ("b", vec![Parallax]), ("c", vec![Parallax, Normal])] {
+        let expected =
+            [("a", vec![normal, parallax]), ("b", vec![parallax]), ("c", vec![parallax, normal]), ("d", vec![None])];
+        for (name, maps) in expected {
             assert_eq!(config.settings(Path::new(name)).maps, Some(maps), "{name}");
         }
     }
