@@ -22,6 +22,7 @@ Examples:
   texbake tangents model.glb -o model_t.glb
   texbake devices
   texbake verify
+  texbake shaders --lang glsl -o shaders
 
 Exit status: 0 all went well, 1 something failed, 2 wrong arguments or
 settings, 130 interrupted.")]
@@ -41,6 +42,7 @@ pub enum Command {
     Diff(Box<super::diff::DiffArguments>),
     Devices(DevicesArguments),
     Verify(Box<super::verify::VerifyArguments>),
+    Shaders(super::shaders::ShadersArguments),
 }
 
 /// Bake one height map into a normal map

@@ -13,6 +13,7 @@ mod parallax;
 mod print;
 mod progress;
 mod settings;
+mod shaders;
 mod single;
 mod tangents;
 mod values;
@@ -39,6 +40,7 @@ pub fn run() -> ExitCode {
         Command::Diff(arguments) => diff::diff(arguments),
         Command::Devices(arguments) => devices::devices(arguments),
         Command::Verify(arguments) => verify::verify(arguments),
+        Command::Shaders(arguments) => shaders::shaders(arguments),
     };
     let exit = done.unwrap_or_else(|failure| {
         print::say(format_args!("error: {failure}"));
