@@ -23,6 +23,7 @@ Examples:
   texbake preview height.png -o sheet.png --scale 24
   texbake devices
   texbake verify
+  texbake shaders --lang glsl -o shaders
 
 Exit status: 0 all went well, 1 something failed, 2 wrong arguments or
 settings, 130 interrupted.")]
@@ -44,6 +45,7 @@ pub enum Command {
     Devices(DevicesArguments),
     Verify(Box<super::verify::VerifyArguments>),
     Measure(Box<super::measure::MeasureArguments>),
+    Shaders(super::shaders::ShadersArguments),
 }
 
 /// Bake one height map into a normal map

@@ -15,6 +15,7 @@ mod preview;
 mod print;
 mod progress;
 mod settings;
+mod shaders;
 mod single;
 mod tangents;
 mod values;
@@ -43,6 +44,7 @@ pub fn run() -> ExitCode {
         Command::Preview(arguments) => preview::preview(arguments),
         Command::Verify(arguments) => verify::verify(arguments),
         Command::Measure(arguments) => measure::run(arguments),
+        Command::Shaders(arguments) => shaders::shaders(arguments),
     };
     let exit = done.unwrap_or_else(|failure| {
         print::say(format_args!("error: {failure}"));
