@@ -4,12 +4,14 @@ mod args;
 mod bake;
 mod blend;
 mod check;
+mod check_plan;
 pub(crate) mod config;
 mod devices;
 mod diff;
 mod exit;
 mod normal;
 mod parallax;
+mod plan;
 mod print;
 mod progress;
 mod settings;
@@ -33,6 +35,7 @@ pub fn run() -> ExitCode {
         Command::Normal(arguments) => normal::normal(arguments),
         Command::Parallax(arguments) => parallax::parallax(arguments),
         Command::Bake(arguments) => bake::bake(arguments),
+        Command::Plan(arguments) => plan::plan(arguments),
         Command::Blend(arguments) => blend::blend(arguments),
         Command::Tangents(arguments) => tangents::tangents(arguments),
         Command::Check(arguments) => check::check(arguments),
