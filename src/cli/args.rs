@@ -18,6 +18,7 @@ Examples:
   texbake bake textures --out baked --maps normal,parallax
   texbake normal height.png -o normal.png --scale 24
   texbake parallax height.png -o parallax.png --scale 24 --json
+  texbake plan scene.toml -o texbake.toml --explain
   texbake blend base_normal.png detail_normal.png -o normal.png --tile
   texbake tangents model.glb -o model_t.glb
   texbake preview height.png -o sheet.png --scale 24
@@ -37,6 +38,7 @@ pub enum Command {
     Normal(Box<NormalArguments>),
     Parallax(Box<ParallaxArguments>),
     Bake(Box<BakeArguments>),
+    Plan(Box<super::plan::PlanArguments>),
     Blend(Box<BlendArguments>),
     Tangents(Box<super::tangents::TangentsArguments>),
     Check(Box<super::check::CheckArguments>),
@@ -180,6 +182,11 @@ name of an option:
 What a shader needs to know of a parallax map goes into the --report; see
 texbake parallax --help.
 
+texbake plan writes a texbake.toml of what a scene needs, with predictions of
+what its maps are off by. --check-plan reads the maps that were baked, measures
+them again, and ends with 1 if a prediction is broken; --check-plan=only bakes
+nothing.
+
 Examples:
   texbake bake textures --out baked
   texbake bake textures --out baked --maps normal,parallax --scale 24
@@ -203,6 +210,11 @@ pub struct BakeArguments {
     #[arg(long, value_name = "FILE", help_heading = "Files")]
     pub config: Option<PathBuf>,
 
+    /// Measure the maps against the predictions of texbake plan, after the bake, or only those that are there
+    #[arg(long, value_enum, num_args = 0..=1, require_equals = true, default_missing_value = "after")]
+    #[arg(value_name = "WHEN", help_heading = "Files")]
+    pub check_plan: Option<CheckPlan>,
+
     /// Files baked at the same time, each with its own rows in memory [default: one more than the cores]
     #[arg(short, long, value_name = "N", help_heading = "Where it runs")]
     pub jobs: Option<NonZeroUsize>,
@@ -216,6 +228,15 @@ pub struct BakeArguments {
 
     #[command(flatten)]
     pub reporting: Reporting,
+}
+
+/// When the predictions of a plan are checked.
+#[derive(ValueEnum, Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CheckPlan {
+    /// After the bake.
+    After,
+    /// Nothing is baked.
+    Only,
 }
 
 /// What may differ from file to file in a folder.

@@ -1,6 +1,7 @@
 //! `texbake bake`: folders.
 
-use super::args::{BakeArguments, PerFile};
+use super::args::{BakeArguments, CheckPlan, PerFile};
+use super::check_plan::PlanCheck;
 use super::config::Config;
 use super::exit::{Exit, Failure};
 use super::interruptible;
@@ -31,6 +32,10 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
         describe(config, &found);
     }
     let (jobs, left_out) = jobs(arguments, config.as_ref(), &found)?;
+    let check = arguments.check_plan.map(|_| PlanCheck::new(config.as_ref(), &found, &jobs)).transpose()?;
+    if let (Some(check), Some(CheckPlan::Only)) = (&check, arguments.check_plan) {
+        return check.run(reporting.quiet);
+    }
     let settings = config.as_ref().map(|config| config.path.as_path());
     let files = Job::all_files(&jobs);
     let report_file = reporting.report.as_deref().map(|path| JsonFile::create("report", path, &files, settings));
@@ -55,9 +60,14 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     if let Some(file) = report_file {
         file.write(&report)?;
     }
+    let is_broken = match &check {
+        // What failed is told; what was interrupted is not to be measured.
+        Some(check) if report.totals.baked == jobs.len() => check.run(reporting.quiet)? == Exit::Failed,
+        _ => false,
+    };
     Ok(match report.totals {
         totals if totals.stopped + totals.not_begun > 0 => Exit::Interrupted,
-        totals if totals.failed > 0 || !errors.is_empty() => Exit::Failed,
+        totals if totals.failed > 0 || !errors.is_empty() || is_broken => Exit::Failed,
         _ => Exit::Success,
     })
 }
@@ -164,7 +174,7 @@ fn jobs<'a>(
 }
 
 /// The path below the folder that was searched, which globs match.
-fn relative(map: &Found) -> PathBuf {
+pub fn relative(map: &Found) -> PathBuf {
     map.folder.join(map.path.file_name().unwrap_or_default())
 }
 

@@ -4,6 +4,7 @@ mod args;
 mod bake;
 mod blend;
 mod check;
+mod check_plan;
 pub(crate) mod config;
 mod devices;
 mod diff;
@@ -11,6 +12,7 @@ mod exit;
 mod measure;
 mod normal;
 mod parallax;
+mod plan;
 mod preview;
 mod print;
 mod progress;
@@ -36,6 +38,7 @@ pub fn run() -> ExitCode {
         Command::Normal(arguments) => normal::normal(arguments),
         Command::Parallax(arguments) => parallax::parallax(arguments),
         Command::Bake(arguments) => bake::bake(arguments),
+        Command::Plan(arguments) => plan::plan(arguments),
         Command::Blend(arguments) => blend::blend(arguments),
         Command::Tangents(arguments) => tangents::tangents(arguments),
         Command::Check(arguments) => check::check(arguments),
