@@ -41,7 +41,7 @@ pub struct OwnKernel<'a> {
     pub entry_point: &'a str,
     /// The values of its overrides.
     pub constants: &'a [(&'a str, f64)],
-    /// The bindings of group 0, in order; all hold words of 32 bits.
+    /// The bindings of group 0, in order; all hold words of 32 bits, or none.
     pub bindings: &'a [Binding],
 }
 
@@ -104,11 +104,13 @@ impl Subject {
     ///
     /// The twin gives the words of each [`Binding::ReadWrite`] buffer, in their order, after the work is done. Buffers
     /// keep their lengths while inputs are simplified; a twin that knows no answer for simpler ones gives no buffers.
+    /// Uniforms and textures stay as they are.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if there is not a buffer for each binding, or the twin gives others than the kernel may
-    /// write; [`Error::Device`] if the kernel does not compile, does not fit its bindings, or the device fails; or this
-    /// is no GPU.
+    /// [`Error::Parameter`] if there is not a buffer for each binding, a texture has not a word for each texel, or the
+    /// twin gives other buffers than the kernel may write; [`Error::Device`] if the kernel does not compile, does not
+    /// fit its bindings, or the device does not filter what a texture holds ([`Binding::Sampler`]), or fails; or this is
+    /// no GPU.
     pub fn compare(
         &self,
         kernel: &OwnKernel<'_>,

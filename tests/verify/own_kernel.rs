@@ -1,6 +1,7 @@
 //! Somebody else's kernel and its twin.
 
 use crate::support::{Random, every_baker};
+use texbake::Size;
 use texbake::verify::{Binding, OwnKernel, Subject, Tolerance, Work};
 
 const SQUARES: OwnKernel<'static> = OwnKernel {
@@ -98,6 +99,62 @@ fn step(@builtin(global_invocation_id) id: vec3<u32>) { next[id.x] = a[id.x] + 2
         let of = |tolerance| gpu.compare(&kernel, &twin, &work, tolerance).unwrap();
         assert_eq!((of(Tolerance::Floats(2)).passed(), of(Tolerance::Floats(2)).largest), (true, 2));
         assert!(!of(Tolerance::Floats(1)).passed() && !of(Tolerance::Bits).passed());
+    }
+}
+
+/// A rectangle of 4 x 2 texels, sampled at their middles, between them, and beyond the edges.
+#[test]
+fn textures_are_filtered_and_repeat() {
+    let kernel = OwnKernel {
+        wgsl: "
+@group(0) @binding(0) var map: texture_2d<f32>;
+@group(0) @binding(1) var linear: sampler;
+@group(0) @binding(2) var<storage, read> uv: array<vec2<f32>>;
+@group(0) @binding(3) var<storage, read_write> heights: array<f32>;
+@compute @workgroup_size(1)
+fn look(@builtin(global_invocation_id) id: vec3<u32>) {
+    heights[id.x] = textureSampleLevel(map, linear, uv[id.x] / vec2<f32>(4.0, 2.0), 0.0).r;
+}",
+        entry_point: "look",
+        constants: &[],
+        bindings: &[Binding::Texture(Size::new(4, 2).unwrap()), Binding::Sampler, Binding::Read, Binding::ReadWrite],
+    };
+    let words = |floats: &[f32]| -> Vec<u32> { floats.iter().map(|float| float.to_bits()).collect() };
+    let texels = [0.0, 1.0, 2.0, 3.0, 10.0, 20.0, 30.0, -40.0];
+    let places = [[0.5, 0.5], [3.5, 1.5], [2.0, 0.5], [0.5, 1.0], [2.0, 1.0], [4.0, 0.5], [-0.5, 2.5], [0.75, 0.5]];
+    let heights = [0.0, -40.0, 1.5, 5.0, 13.25, 1.5, 3.0, 0.25];
+    let poison = vec![f32::NAN.to_bits(); places.len()];
+    let work = Work {
+        buffers: vec![words(&texels), vec![], words(places.as_flattened()), poison],
+        workgroups: [places.len() as u32, 1, 1],
+    };
+    for gpu in gpus() {
+        let compare = |work: &Work, heights: &[f32]| {
+            gpu.compare(&kernel, &|_: &Work| vec![words(heights)], work, Tolerance::Bits).map_err(|e| e.to_string())
+        };
+        let comparison = compare(&work, &heights).unwrap();
+        assert!(comparison.passed(), "{}: {comparison:?}", gpu.name());
+        // A texel that differs is seen, and nothing is tried in its place.
+        let mut other = work.clone();
+        other.buffers[0][2] = 2.5f32.to_bits();
+        let comparison = compare(&other, &heights).unwrap();
+        assert_eq!(comparison.differing, 2);
+        assert_eq!(comparison.mismatch.unwrap().buffers[0], other.buffers[0]);
+        other.buffers[0].pop();
+        let error = compare(&other, &heights).unwrap_err();
+        assert_eq!(error, "words of a texture is 7: it must be 8, the texels of 4 x 2");
+        other.buffers[1] = other.buffers[0].split_off(0);
+        other.buffers[0] = work.buffers[0].clone();
+        assert_eq!(compare(&other, &heights).unwrap_err(), "words of a sampler is 7: it must be 0");
+        // A third is no f16.
+        other = work.clone();
+        other.buffers[0][2] = (1f32 / 3.0).to_bits();
+        match compare(&other, &heights) {
+            Ok(comparison) => assert_eq!(comparison.differing, 2),
+            Err(error) => assert!(error.ends_with("it filters textures of f16 alone, and a texel is none"), "{error}"),
+        }
+        // The device is none the worse for it.
+        assert!(compare(&work, &heights).unwrap().passed());
     }
 }
 

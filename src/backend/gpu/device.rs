@@ -91,7 +91,13 @@ impl Device {
             max_storage_buffer_binding_size: own.max_storage_buffer_binding_size,
             ..wgpu::Limits::downlevel_defaults().using_resolution(own)
         };
-        let descriptor = DeviceDescriptor { label: Some("texbake"), required_limits: limits, ..Default::default() };
+        let descriptor = DeviceDescriptor {
+            label: Some("texbake"),
+            required_limits: limits,
+            // For kernels of others: where the adapter has it.
+            required_features: adapter.features() & wgpu::Features::FLOAT32_FILTERABLE,
+            ..Default::default()
+        };
         let opened = pollster::block_on(adapter.request_device(&descriptor));
         let (device, queue) = opened.map_err(|error| Error::device(&name, error))?;
         let this = Self::new(name, device, queue);

@@ -2,10 +2,15 @@
 
 use super::device::Device;
 use super::transfer::Mapping;
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::map::Size;
+use half::f16;
 use std::borrow::Cow;
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
-use wgpu::{BufferUsages, ComputePipelineDescriptor, MapMode, PipelineCompilationOptions};
+use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
+use wgpu::{
+    BindingResource, BufferUsages, ComputePipelineDescriptor, MapMode, PipelineCompilationOptions, TextureFormat,
+    TextureUsages,
+};
 
 /// What a binding is to a kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,6 +21,44 @@ pub enum Binding {
     Read,
     /// `var<storage, read_write>`.
     ReadWrite,
+    /// `texture_2d<f32>` of one level and one channel, which reads as r: a word is the f32 of a texel, row by row.
+    Texture(Size),
+    /// `sampler`: linear between texels, repeating beyond the edges. It has no words.
+    ///
+    /// Where the device does not filter textures of f32, or wgpu does not know that it does (on desktop OpenGL), a kernel
+    /// with a sampler has textures of f16, and their texels must be such: no value is changed.
+    Sampler,
+}
+
+impl Binding {
+    /// Fails if it cannot hold so many words.
+    pub(crate) fn check_words(self, words: usize) -> Result<()> {
+        match self {
+            Self::Texture(size) if words != size.texels() => {
+                let range = format!("{}, the texels of {size}", size.texels());
+                Err(Error::parameter("words of a texture", words, range))
+            }
+            Self::Sampler if words > 0 => Err(Error::parameter("words of a sampler", words, "0")),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// What stands for a binding's words on the device.
+enum Bound {
+    Buffer(wgpu::Buffer),
+    Texture(wgpu::TextureView),
+    Sampler(wgpu::Sampler),
+}
+
+impl Bound {
+    fn resource(&self) -> BindingResource<'_> {
+        match self {
+            Self::Buffer(buffer) => buffer.as_entire_binding(),
+            Self::Texture(view) => BindingResource::TextureView(view),
+            Self::Sampler(sampler) => BindingResource::Sampler(sampler),
+        }
+    }
 }
 
 /// A compiled kernel.
@@ -49,24 +92,19 @@ impl<'a> OwnPipeline<'a> {
     /// Runs it on buffers of words, bound in their order in group 0, and gives the words of those that it may write.
     ///
     /// # Errors
-    /// [`crate::Error::Device`] if the buffers do not fit the kernel, or the device fails.
+    /// [`crate::Error::Parameter`] if a texture has not a word for each texel, or a sampler has any;
+    /// [`crate::Error::Device`] if the buffers do not fit the kernel, the device does not filter what a texture holds, or
+    /// it fails.
     pub fn run(&self, buffers: &[(Binding, &[u32])], workgroups: [u32; 3]) -> Result<Vec<Vec<u32>>> {
+        buffers.iter().try_for_each(|(binding, words)| binding.check_words(words.len()))?;
+        let is_filtered = buffers.iter().any(|(binding, _)| *binding == Binding::Sampler);
         let device = &self.device.device;
         let (downloads, submission) = self.device.guarded(|| {
-            let upload = |&(binding, words): &(Binding, &[u32])| {
-                let usage = match binding {
-                    Binding::Uniform => BufferUsages::UNIFORM,
-                    Binding::Read => BufferUsages::STORAGE,
-                    Binding::ReadWrite => BufferUsages::STORAGE | BufferUsages::COPY_SRC,
-                };
-                let contents = bytemuck::cast_slice(words);
-                device.create_buffer_init(&BufferInitDescriptor { label: Some("words"), contents, usage })
-            };
-            let uploaded: Vec<wgpu::Buffer> = buffers.iter().map(upload).collect();
-            let entries: Vec<_> = uploaded
-                .iter()
-                .zip(0..)
-                .map(|(buffer, binding)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            let upload = |&(binding, words): &(Binding, &[u32])| self.upload(binding, words, is_filtered);
+            let bound = buffers.iter().map(upload).collect::<Result<Vec<Bound>>>()?;
+            let entries: Vec<_> = (0..)
+                .zip(&bound)
+                .map(|(binding, bound)| wgpu::BindGroupEntry { binding, resource: bound.resource() })
                 .collect();
             let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("own kernel"),
@@ -81,7 +119,8 @@ impl<'a> OwnPipeline<'a> {
             pass.dispatch_workgroups(x, y, z);
             drop(pass);
             let mut downloads = Vec::new();
-            for (buffer, _) in uploaded.iter().zip(buffers).filter(|(_, (binding, _))| *binding == Binding::ReadWrite) {
+            for (bound, (binding, _)) in bound.iter().zip(buffers) {
+                let (Bound::Buffer(buffer), Binding::ReadWrite) = (bound, binding) else { continue };
                 let usage = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
                 let size = buffer.size();
                 let descriptor =
@@ -101,5 +140,68 @@ impl<'a> OwnPipeline<'a> {
             };
             downloads.iter().map(words).collect()
         })
+    }
+    fn upload(&self, binding: Binding, words: &[u32], is_filtered: bool) -> Result<Bound> {
+        let device = &self.device.device;
+        let usage = match binding {
+            Binding::Uniform => BufferUsages::UNIFORM,
+            Binding::Read => BufferUsages::STORAGE,
+            Binding::ReadWrite => BufferUsages::STORAGE | BufferUsages::COPY_SRC,
+            Binding::Texture(size) => return self.texture(size, words, is_filtered).map(Bound::Texture),
+            Binding::Sampler => return Ok(Bound::Sampler(device.create_sampler(&SAMPLER))),
+        };
+        let contents = bytemuck::cast_slice(words);
+        let buffer = device.create_buffer_init(&BufferInitDescriptor { label: Some("words"), contents, usage });
+        Ok(Bound::Buffer(buffer))
+    }
+
+    fn texture(&self, size: Size, words: &[u32], is_filtered: bool) -> Result<wgpu::TextureView> {
+        let Device { device, queue, .. } = self.device;
+        let create = |format, texels: &[u8]| {
+            let descriptor = texture(size, format);
+            let texture = device.create_texture_with_data(queue, &descriptor, TextureDataOrder::default(), texels);
+            Ok(texture.create_view(&Default::default()))
+        };
+        if !is_filtered || device.features().contains(wgpu::Features::FLOAT32_FILTERABLE) {
+            return create(TextureFormat::R32Float, bytemuck::cast_slice(words));
+        }
+        let half = |word: &u32| Some(f16::from_f32(f32::from_bits(*word))).filter(|it| it.to_f32().to_bits() == *word);
+        match words.iter().map(half).collect::<Option<Vec<f16>>>() {
+            Some(halves) => create(TextureFormat::R16Float, bytemuck::cast_slice(&halves)),
+            None => Err(self.device.error("it filters textures of f16 alone, and a texel is none")),
+        }
+    }
+}
+
+const SAMPLER: wgpu::SamplerDescriptor<'static> = {
+    let (address, filter) = (wgpu::AddressMode::Repeat, wgpu::FilterMode::Linear);
+    wgpu::SamplerDescriptor {
+        label: Some("linear, repeating"),
+        address_mode_u: address,
+        address_mode_v: address,
+        address_mode_w: address,
+        mag_filter: filter,
+        min_filter: filter,
+        mipmap_filter: wgpu::MipmapFilterMode::Nearest,
+        lod_min_clamp: 0.0,
+        lod_max_clamp: 32.0,
+        compare: None,
+        anisotropy_clamp: 1,
+        border_color: None,
+    }
+};
+
+fn texture(size: Size, format: TextureFormat) -> wgpu::TextureDescriptor<'static> {
+    // A size has at most 2^31 - 1 texels on a side; what is too large for the device is its error.
+    let [width, height] = [size.width(), size.height()].map(|texels| texels as u32);
+    wgpu::TextureDescriptor {
+        label: Some("texels"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+        view_formats: &[],
     }
 }
