@@ -27,9 +27,10 @@ those of the surface. Then it says what each step buys and costs: the Pareto
 fronts.
 
 The folder gets report.json (every figure, with its unit), report.md (tables,
-words and plots), and the plots as SVG and PNG: storage, bake-time,
-parallax-fetches, parallax-time, parallax-elevations, parallax-steps. They are
-replaced together, when all are complete; an interrupt leaves the old ones.
+words and plots), and the plots as SVG and PNG: storage, bake-time, and of
+parallax fetches, time, elevations and steps, by the 99th percentile and by
+the mean of the errors. They are replaced when all are complete; an interrupt
+leaves the old ones.
 
 A map longer than 2048 texels on a side (256 with --quick) is measured in its
 middle, which then is a map of its own. Errors are the same for the same input
@@ -268,7 +269,7 @@ fn advance(bar: &ProgressBar, progress: Progress<'_>, arguments: &MeasureArgumen
 /// The fronts in words.
 fn show(figures: &Figures) {
     for front in &figures.fronts {
-        put(format_args!("{}, by the error that 99 of 100 do not exceed:", front.name));
+        put(format_args!("{}, by {}:", front.name, front.by));
         front.lines().iter().for_each(|line| put(format_args!("  {line}")));
     }
 }

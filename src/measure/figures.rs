@@ -2,7 +2,7 @@
 
 use super::blends::{self, BlendFigure, Layers, blend_figures};
 use super::frames::{Extent, FrameFigure, frame_figures};
-use super::front::Front;
+use super::front::{Front, Statistic};
 use super::maps::{NormalFigure, PRECISIONS, ParallaxFigure, normal_figures, parallax_figures};
 use super::parallax::{OffsetFigure, offset_figures};
 use super::region::{Region, quarter_turned, scale_for};
@@ -152,29 +152,33 @@ fn count(measured: &Measured<'_>, options: &MeasureOptions) -> usize {
     measured.devices.len() * (maps + blends) + options.elevations().len() + meshes
 }
 
-/// Storage of normal maps, time of bakes, and parallax by fetches and by time: all by the error that 99 of 100 texels or
-/// pixels do not exceed.
+/// Storage of normal maps and time of bakes; fetches and time of parallax, whose largest errors are where one bump hides
+/// another, by their mean too.
 fn fronts(normal_maps: &[NormalFigure], offsets: &[OffsetFigure], elevation: f64) -> Vec<Front> {
     let first = normal_maps.first().map(|figure| (&figure.stored.device, &figure.stored.precision));
     let is_first = |figure: &&NormalFigure| first == Some((&figure.stored.device, &figure.stored.precision));
+    let by = Statistic::Percentile99;
     let storage = normal_maps.iter().filter(is_first).map(|figure| {
         let name = format!("{} {} {}", figure.stored.encoding, figure.stored.bits, figure.channels);
-        (name, figure.stored.bytes_per_texel as f64, figure.error_degrees.percentile_99)
+        (name, figure.stored.bytes_per_texel as f64, by.of(&figure.error_degrees))
     });
     let bakes = normal_maps.iter().map(|figure| {
         let name = format!("{}: {}", short_name(&figure.stored.device), figure.name());
-        (name, figure.stored.nanoseconds_per_texel, figure.error_degrees.percentile_99)
+        (name, figure.stored.nanoseconds_per_texel, by.of(&figure.error_degrees))
     });
-    let seen = || offsets.iter().filter(|figure| figure.elevation_degrees == elevation);
-    let fetches = seen().map(|it| (it.method.clone(), f64::from(it.fetches), it.error_texels.percentile_99));
-    let times = seen().map(|it| (it.method.clone(), it.nanoseconds_per_pixel, it.error_texels.percentile_99));
-    let from = |what: &str| format!("{what} of parallax, seen from {elevation} degrees");
-    vec![
-        Front::new("storage of normal maps", ["bytes per texel", "degrees"], storage),
-        Front::new("time of bakes", ["ns per texel", "degrees"], bakes),
-        Front::new(from("fetches"), ["fetches per pixel", "texels"], fetches),
-        Front::new(from("time"), ["ns per pixel", "texels"], times),
-    ]
+    let mut fronts = vec![
+        Front::new("storage of normal maps", by, ["bytes per texel", "degrees"], storage),
+        Front::new("time of bakes", by, ["ns per texel", "degrees"], bakes),
+    ];
+    for by in [Statistic::Percentile99, Statistic::Mean] {
+        let seen = || offsets.iter().filter(|figure| figure.elevation_degrees == elevation);
+        let fetches = seen().map(|it| (it.method.clone(), f64::from(it.fetches), by.of(&it.error_texels)));
+        let times = seen().map(|it| (it.method.clone(), it.nanoseconds_per_pixel, by.of(&it.error_texels)));
+        let from = |what: &str| format!("{what} of parallax, seen from {elevation} degrees");
+        fronts.push(Front::new(from("fetches"), by, ["fetches per pixel", "texels"], fetches));
+        fronts.push(Front::new(from("time"), by, ["ns per pixel", "texels"], times));
+    }
+    fronts
 }
 
 /// A device's name up to its first comma or bracket: `cpu`, `gpu llvmpipe`.

@@ -1,6 +1,19 @@
 //! What each step buys and costs: Pareto fronts.
 
+use super::Errors;
 use serde::Serialize;
+use std::fmt;
+
+/// The error by which candidates are compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Statistic {
+    /// [`Errors::percentile_99`].
+    #[serde(rename = "percentile_99")]
+    Percentile99,
+    /// [`Errors::mean`].
+    Mean,
+}
 
 /// Something that may be chosen, with what it costs and how wrong it is.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -11,7 +24,7 @@ pub struct Candidate {
     pub cost: f64,
     /// In the front's unit of errors.
     pub error: f64,
-    /// Whether nothing costs as little and is as right.
+    /// Whether it is worth its cost: nothing that costs as little is as right, but for a gain below [`GAIN`].
     pub is_on_front: bool,
 }
 
@@ -35,6 +48,8 @@ pub struct Step {
 pub struct Front {
     /// What is compared.
     pub name: String,
+    /// The error by which it is compared.
+    pub by: Statistic,
     /// `bytes per texel`.
     pub cost_unit: &'static str,
     /// `degrees`.
@@ -69,21 +84,50 @@ pub fn pareto_front(points: &[(f64, f64)]) -> Vec<usize> {
     order
 }
 
+/// The share of an error by which a step of a [`Front`] lessens it at least: less is noise, of times above all.
+pub const GAIN: f64 = 0.05;
+
+impl Statistic {
+    /// This number of some errors.
+    pub fn of(self, errors: &Errors) -> f64 {
+        match self {
+            Self::Percentile99 => errors.percentile_99,
+            Self::Mean => errors.mean,
+        }
+    }
+}
+
+impl fmt::Display for Statistic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Percentile99 => "the error that 99 of 100 do not exceed",
+            Self::Mean => "the mean error",
+        })
+    }
+}
+
 impl Front {
     /// Of candidates by name, cost and error.
     pub fn new(
         name: impl Into<String>,
+        by: Statistic,
         [cost_unit, error_unit]: [&'static str; 2],
         candidates: impl IntoIterator<Item = (String, f64, f64)>,
     ) -> Self {
         let candidate = |(name, cost, error)| Candidate { name, cost, error, is_on_front: false };
         let mut candidates: Vec<Candidate> = candidates.into_iter().map(candidate).collect();
         let points: Vec<(f64, f64)> = candidates.iter().map(|it| (it.cost, it.error)).collect();
-        let front = pareto_front(&points);
+        let mut front = pareto_front(&points);
+        let mut least = f64::INFINITY;
+        front.retain(|&index| {
+            let is_worth_it = points[index].1 <= (1.0 - GAIN) * least;
+            least = if is_worth_it { points[index].1 } else { least };
+            is_worth_it
+        });
         front.iter().for_each(|&index| candidates[index].is_on_front = true);
         let step = |pair: &[usize]| Step::between(&candidates[pair[0]], &candidates[pair[1]], cost_unit, error_unit);
         let steps = front.windows(2).map(step).collect();
-        Self { name: name.into(), cost_unit, error_unit, candidates, steps }
+        Self { name: name.into(), by, cost_unit, error_unit, candidates, steps }
     }
 
     /// The candidates that are worth choosing, by rising cost.
@@ -96,8 +140,8 @@ impl Front {
     /// In words: the cheapest, then what each step buys and costs.
     pub fn lines(&self) -> Vec<String> {
         let cheapest = self.best().first().map(|first| {
-            let (cost, error) = (digits(first.cost), digits(first.error));
-            format!("{} is the cheapest: {cost} {}, {error} {}", first.name, self.cost_unit, self.error_unit)
+            let (cost, error) = (counted(first.cost, self.cost_unit), digits(first.error));
+            format!("{} is the cheapest: {cost}, {error} {}", first.name, self.error_unit)
         });
         cheapest.into_iter().chain(self.steps.iter().map(|step| step.words.clone())).collect()
     }
@@ -112,15 +156,25 @@ impl Step {
             None => "the rest of the error".into(),
         };
         let words = format!(
-            "from {} to {}: {} more {cost_unit} buys {gain}, {} instead of {} {error_unit}",
+            "from {} to {}: +{} buys {gain}, {} instead of {} {error_unit}",
             from.name,
             to.name,
-            digits(extra_cost),
+            counted(extra_cost, cost_unit),
             digits(to.error),
             digits(from.error),
         );
         Self { from: from.name.clone(), to: to.name.clone(), extra_cost, times_less_error, words }
     }
+}
+
+/// `1 byte per texel`, `2 bytes per texel`.
+fn counted(cost: f64, unit: &str) -> String {
+    let one = match unit {
+        "bytes per texel" => "byte per texel",
+        "fetches per pixel" => "fetch per pixel",
+        unit => unit,
+    };
+    format!("{} {}", digits(cost), if cost == 1.0 { one } else { unit })
 }
 
 /// A number with three digits that tell something, and all of those before the point: `1234`, `12.3`, `0.0123`, `1.2e-5`.
@@ -130,7 +184,7 @@ pub fn digits(number: f64) -> String {
         return number.to_string();
     }
     if !(1e-4..1e9).contains(&magnitude) {
-        return format!("{number:.1e}");
+        return format!("{number:.1e}").replace(".0e", "e");
     }
     let decimals = (2 - magnitude.log10().floor() as i32).max(0) as usize;
     let text = format!("{number:.decimals$}");

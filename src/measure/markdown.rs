@@ -1,6 +1,6 @@
 //! A report to read: tables, words, and the plots beside it.
 
-use super::{Errors, Report, digits};
+use super::{Errors, GAIN, Report, digits};
 use std::fmt::Write;
 
 impl Report {
@@ -49,7 +49,7 @@ impl Report {
         page.line("## What each step buys and costs\n");
         for front in &self.figures.fronts {
             page.line(format_args!("### {}\n", capital(&front.name)));
-            page.line("By the error that 99 of 100 do not exceed.\n");
+            page.line(format_args!("By {}; gains below {} % are left out.\n", front.by, 100.0 * GAIN));
             front.lines().iter().for_each(|line| page.line(format_args!("- {line}")));
             page.line("");
         }
@@ -135,7 +135,7 @@ fn errors(errors: &Errors) -> String {
     [errors.largest, errors.percentile_99, errors.mean].map(digits).join(" / ")
 }
 
-fn capital(text: &str) -> String {
+pub(super) fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }

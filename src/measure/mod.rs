@@ -50,7 +50,7 @@ pub use figures::{Figures, MeasureOptions, Measured, measure};
 pub use folder::ReportFolder;
 pub use formats::{normal_formats, parallax_formats};
 pub use frames::FrameFigure;
-pub use front::{Candidate, Front, Step, digits, pareto_front};
+pub use front::{Candidate, Front, GAIN, Statistic, Step, digits, pareto_front};
 pub use maps::{NormalFigure, ParallaxFigure, Stored};
 pub use normals::TrueNormals;
 pub use offsets::{View, Views};

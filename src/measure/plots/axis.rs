@@ -103,7 +103,7 @@ mod tests {
         let bytes = Axis::new("bytes", Spacing::Linear, [2.0, 12.0].into_iter());
         assert_eq!(texts(&bytes), ["2", "4", "6", "8", "10", "12"]);
         let degrees = Axis::new("degrees", Spacing::Log, [3e-6, 0.0, 0.4].into_iter());
-        assert_eq!(texts(&degrees), ["1.0e-6", "1.0e-5", "1e-4", "0.001", "0.01", "0.1", "0"]);
+        assert_eq!(texts(&degrees), ["1e-6", "1e-5", "0.0001", "0.001", "0.01", "0.1", "0"]);
         assert_eq!((degrees.share(0.0), degrees.share(0.8)), (0.0, 1.0));
         let fetches = Axis::new("fetches", Spacing::LogFromZero, [0.0, 21.0].into_iter());
         assert_eq!(texts(&fetches), ["1", "2", "4", "8", "16", "0"]);

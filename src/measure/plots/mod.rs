@@ -5,7 +5,8 @@ mod canvas;
 mod chart;
 mod labels;
 
-use super::Figures;
+use super::markdown::capital;
+use super::{Figures, Statistic};
 use crate::error::Result;
 use axis::{Axis, Spacing};
 use canvas::Picture;
@@ -21,24 +22,28 @@ pub(super) struct Plot {
 }
 
 /// The names of the fronts' plots, in their order, and how their costs are spaced.
-const FRONTS: [(&str, Spacing); 4] = [
+const FRONTS: [(&str, Spacing); 6] = [
     ("storage", Spacing::Linear),
     ("bake-time", Spacing::Log),
     ("parallax-fetches", Spacing::LogFromZero),
     ("parallax-time", Spacing::Log),
+    ("parallax-fetches-mean", Spacing::LogFromZero),
+    ("parallax-time-mean", Spacing::Log),
+];
+
+/// The names of the plots over elevations and over steps.
+const LINES: [(&str, &str, Statistic); 2] = [
+    ("parallax-elevations", "parallax-steps", Statistic::Percentile99),
+    ("parallax-elevations-mean", "parallax-steps-mean", Statistic::Mean),
 ];
 
 /// The methods whose lines are drawn over the elevation.
-const LINES: [&str; 8] =
+const METHODS: [&str; 8] =
     ["none", "welsh", "limited", "plane, limit 1", "plane, limit 3", "steps 1", "steps 4", "relief 16+5"];
-
-/// The names of the lines' plots.
-const ELEVATIONS: &str = "parallax-elevations";
-const STEPS: &str = "parallax-steps";
 
 /// The names of all files.
 pub(super) fn plot_files() -> impl Iterator<Item = String> {
-    let names = FRONTS.map(|(name, _)| name).into_iter().chain([ELEVATIONS, STEPS]);
+    let names = FRONTS.map(|(name, _)| name).into_iter().chain(LINES.into_iter().flat_map(|(a, b, _)| [a, b]));
     names.flat_map(|name| ["svg", "png"].map(|extension| format!("{name}.{extension}")))
 }
 
@@ -61,14 +66,16 @@ pub(super) fn plots(figures: &Figures) -> Result<Vec<Plot>> {
         };
         plot(name, &chart)
     });
-    let lines = [elevations(figures), steps(figures)].map(|(name, chart)| plot(name, &chart));
+    let lines = LINES.into_iter().flat_map(|(over_elevations, over_steps, by)| {
+        [plot(over_elevations, &elevations(figures, by)), plot(over_steps, &steps(figures, by))]
+    });
     fronts.chain(lines).collect()
 }
 
 impl super::Front {
     /// What its plot shows.
     fn title(&self) -> String {
-        format!("Error that 99 of 100 do not exceed against {}", self.name)
+        format!("{}: {}", capital(&self.name), self.by)
     }
 }
 
@@ -78,30 +85,30 @@ fn plot(name: &'static str, chart: &Chart) -> Result<Plot> {
 }
 
 /// How wrong some methods are, over the elevation.
-fn elevations(figures: &Figures) -> (&'static str, Chart) {
+fn elevations(figures: &Figures, by: Statistic) -> Chart {
     let line = |method: &str| {
         let of_method = figures.offsets.iter().filter(|figure| figure.method == method);
-        let points = of_method.map(|figure| (figure.elevation_degrees, figure.error_texels.percentile_99)).collect();
+        let points = of_method.map(|figure| (figure.elevation_degrees, by.of(&figure.error_texels))).collect();
         Series { name: method.into(), points }
     };
-    let title = "Parallax: offset error that 99 of 100 pixels do not exceed".to_owned();
-    (ELEVATIONS, lines(title, ("elevation in degrees", Spacing::Linear), LINES.map(line).into()))
+    let title = format!("Offsets of parallax: {by}");
+    lines(title, ("elevation in degrees", Spacing::Linear), METHODS.map(line).into())
 }
 
 /// What more steps bring, for each elevation.
-fn steps(figures: &Figures) -> (&'static str, Chart) {
+fn steps(figures: &Figures, by: Statistic) -> Chart {
     let mut elevations: Vec<f64> = figures.offsets.iter().map(|figure| figure.elevation_degrees).collect();
     elevations.dedup();
     let line = |elevation: &f64| {
         let seen = figures.offsets.iter().filter(|figure| figure.elevation_degrees == *elevation);
         let step = |figure: &super::OffsetFigure| {
             let k: f64 = figure.method.strip_prefix("steps ")?.parse().ok()?;
-            Some((k, figure.error_texels.percentile_99))
+            Some((k, by.of(&figure.error_texels)))
         };
         Series { name: format!("{elevation} degrees"), points: seen.filter_map(step).collect() }
     };
-    let title = "Parallax in k steps: offset error that 99 of 100 pixels do not exceed".to_owned();
-    (STEPS, lines(title, ("steps k", Spacing::Linear), elevations.iter().map(line).collect()))
+    let title = format!("Offsets of parallax in k steps: {by}");
+    lines(title, ("steps k", Spacing::Linear), elevations.iter().map(line).collect())
 }
 
 fn lines(title: String, (x, spacing): (&str, Spacing), lines: Vec<Series>) -> Chart {
