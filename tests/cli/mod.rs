@@ -12,5 +12,6 @@ mod normal;
 mod parallax;
 mod report;
 mod settings;
+mod shaders;
 pub mod support;
 pub mod tangents;

@@ -23,8 +23,16 @@ pub(super) fn spirv(file: &ShaderFile, title: &str) -> Vec<u8> {
     };
     let words = spv::write_vec(&module, &info, &options, None).expect("the library has nothing that SPIR-V has not");
     let mut module = dr::load_words(words).expect("naga writes SPIR-V");
+    remove_lines(&mut module);
     export_functions(&mut module);
     bytemuck::cast_slice(&module.assemble()).to_vec()
+}
+
+/// Without the lines of instructions: some linkers do not renumber what they refer to.
+fn remove_lines(module: &mut dr::Module) {
+    for block in module.functions.iter_mut().flat_map(|function| &mut function.blocks) {
+        block.instructions.retain(|instruction| instruction.class.opcode != Op::Line);
+    }
 }
 
 fn export_functions(module: &mut dr::Module) {
