@@ -10,6 +10,7 @@ mod gpu;
 mod inspect;
 mod io;
 mod materials;
+mod measure;
 mod normal;
 mod oracle;
 mod parallax;

@@ -4,12 +4,16 @@ mod args;
 mod bake;
 mod blend;
 mod check;
+mod check_plan;
 pub(crate) mod config;
 mod devices;
 mod diff;
 mod exit;
+mod measure;
 mod normal;
 mod parallax;
+mod plan;
+mod preview;
 mod print;
 mod progress;
 mod settings;
@@ -34,12 +38,15 @@ pub fn run() -> ExitCode {
         Command::Normal(arguments) => normal::normal(arguments),
         Command::Parallax(arguments) => parallax::parallax(arguments),
         Command::Bake(arguments) => bake::bake(arguments),
+        Command::Plan(arguments) => plan::plan(arguments),
         Command::Blend(arguments) => blend::blend(arguments),
         Command::Tangents(arguments) => tangents::tangents(arguments),
         Command::Check(arguments) => check::check(arguments),
         Command::Diff(arguments) => diff::diff(arguments),
         Command::Devices(arguments) => devices::devices(arguments),
+        Command::Preview(arguments) => preview::preview(arguments),
         Command::Verify(arguments) => verify::verify(arguments),
+        Command::Measure(arguments) => measure::run(arguments),
         Command::Shaders(arguments) => shaders::shaders(arguments),
     };
     let exit = done.unwrap_or_else(|failure| {

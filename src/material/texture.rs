@@ -20,6 +20,11 @@ impl<const N: usize> Texture<N> {
         self.size
     }
 
+    /// What is beyond the border.
+    pub fn edges(&self) -> Edges {
+        self.edges
+    }
+
     /// The texels, row by row from the top.
     pub fn texels(&self) -> &[[f32; N]] {
         &self.texels

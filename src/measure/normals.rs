@@ -1,10 +1,10 @@
-//! How far the normals of a baked map are from those of its heights.
+//! How far the texels of baked maps are from what the heights stand for.
 
 use super::Errors;
 use crate::error::Result;
 use crate::exact::AxisScale;
 use crate::inspect::angle::degrees;
-use crate::map::{HeightMap, Heights};
+use crate::map::{HeightMap, Heights, Size};
 use crate::material::Texture;
 use crate::ops::bake::{BakeOptions, Filter};
 use rayon::prelude::*;
@@ -37,8 +37,13 @@ impl<'a> TrueNormals<'a> {
         Ok(Self { heights, options: *options, per_difference, weights: [centre, outer] })
     }
 
-    /// The normal of the texel in column x, row y.
-    pub fn at(&self, x: usize, y: usize) -> [f64; 3] {
+    /// Width and height of the map in texels.
+    pub fn size(&self) -> Size {
+        self.heights.size()
+    }
+
+    /// The slopes dz/dx and dz/dy of the texel in column x, row y, in texels.
+    pub fn slope(&self, x: usize, y: usize) -> [f64; 2] {
         let size = self.heights.size();
         let height = |dx: isize, dy: isize| {
             let column = self.options.edges.x.resolve(x as isize + dx, size.width());
@@ -53,20 +58,50 @@ impl<'a> TrueNormals<'a> {
             slope[0] += outer * (along_x(-1) + along_x(1));
             slope[1] += outer * (along_y(-1) + along_y(1));
         }
-        let [x, y] = [-slope[0] * self.per_difference[0], -slope[1] * self.per_difference[1]];
-        let length = (x * x + y * y + 1.0).sqrt();
-        [x / length, y / length, 1.0 / length]
+        [slope[0] * self.per_difference[0], slope[1] * self.per_difference[1]]
+    }
+
+    /// The normal of the texel in column x, row y.
+    pub fn at(&self, x: usize, y: usize) -> [f64; 3] {
+        normal_of(self.slope(x, y))
+    }
+
+    /// The value of the parallax map there, n_z (2h - 1) (FGED2 section 7.7); a height beyond 0 and 1 counts as 0 or 1.
+    pub fn parallax_at(&self, x: usize, y: usize) -> f64 {
+        let h = height(self.heights.heights(), y * self.size().width() + x).clamp(0.0, 1.0);
+        self.at(x, y)[2] * (2.0 * h - 1.0)
     }
 
     /// The angles in degrees between these normals and those of a baked map, as a shader reads them.
     ///
     /// `baked` is of the heights' size.
     pub fn errors(&self, baked: &Texture<3>) -> Errors {
-        let width = self.heights.size().width();
-        let angle =
-            |(i, normal): (usize, &[f32; 3])| degrees(self.at(i % width, i / width), normal.map(f64::from)) as f32;
-        Errors::of(baked.texels().par_iter().enumerate().map(angle).collect())
+        errors_of(baked, |x, y| self.at(x, y))
     }
+
+    /// How far the values of a baked parallax map are from those of [`TrueNormals::parallax_at`].
+    ///
+    /// `baked` is of the heights' size.
+    pub fn parallax_errors(&self, baked: &Texture<1>) -> Errors {
+        let width = self.size().width();
+        let error = |(i, value): (usize, &[f32; 1])| {
+            (f64::from(value[0]) - self.parallax_at(i % width, i / width)).abs() as f32
+        };
+        Errors::of(baked.texels().par_iter().enumerate().map(error).collect())
+    }
+}
+
+/// The angles in degrees between the normals of a map, as a shader reads them, and those that are true of column and row.
+pub(super) fn errors_of(baked: &Texture<3>, truth: impl Fn(usize, usize) -> [f64; 3] + Sync) -> Errors {
+    let width = baked.size().width();
+    let angle = |(i, normal): (usize, &[f32; 3])| degrees(truth(i % width, i / width), normal.map(f64::from)) as f32;
+    Errors::of(baked.texels().par_iter().enumerate().map(angle).collect())
+}
+
+/// The normal of a slope (FGED2 eq. 7.43).
+pub(super) fn normal_of([dx, dy]: [f64; 2]) -> [f64; 3] {
+    let length = (dx * dx + dy * dy + 1.0).sqrt();
+    [-dx / length, -dy / length, 1.0 / length]
 }
 
 fn height(heights: Heights<'_>, texel: usize) -> f64 {

@@ -1,0 +1,187 @@
+//! Everything that is measured of a map.
+
+use super::blends::{self, BlendFigure, Layers, blend_figures};
+use super::frames::{Extent, FrameFigure, frame_figures};
+use super::front::{Front, Statistic};
+use super::maps::{NormalFigure, PRECISIONS, ParallaxFigure, normal_figures, parallax_figures};
+use super::parallax::{OffsetFigure, offset_figures};
+use super::region::{Region, quarter_turned, scale_for};
+use super::steps::{Progress, Steps};
+use super::surfaces::SURFACES;
+use super::{normal_formats, parallax_formats};
+use crate::baker::Baker;
+use crate::error::{Error, Result};
+use crate::map::{Convention, HeightMap};
+use crate::material::Material;
+use crate::mesh::Mesh;
+use crate::ops::Precision;
+use crate::ops::bake::BakeOptions;
+use crate::stream::Monitor;
+use serde::Serialize;
+
+/// How a map is measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasureOptions {
+    /// Scale, filter and edges; maps, formats and precision are measured, whatever is said here.
+    pub bake: BakeOptions,
+    /// Which way green points.
+    pub convention: Convention,
+    /// What pixels are drawn from.
+    pub seed: u64,
+    /// Runs of which a time is the median, after one that is not counted.
+    pub runs: usize,
+    /// Less: a smaller part of the map, fewer pixels, fewer elevations.
+    pub quick: bool,
+    /// The elevation, in degrees, that the fronts of parallax are for.
+    pub elevation: f64,
+}
+
+impl Default for MeasureOptions {
+    fn default() -> Self {
+        let (bake, convention) = (BakeOptions::default(), Convention::default());
+        Self { bake, convention, seed: 1, runs: 5, quick: false, elevation: 30.0 }
+    }
+}
+
+/// What is measured.
+pub struct Measured<'a> {
+    /// The heights.
+    pub heights: &'a HeightMap,
+    /// The heights that are blended with them; without, the same heights turned by a quarter to the right.
+    pub detail: Option<&'a HeightMap>,
+    /// Meshes by name, besides the generated ones.
+    pub models: &'a [(String, Mesh)],
+    /// What bakes.
+    pub devices: &'a [Baker],
+}
+
+/// What was measured.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Figures {
+    /// The part of the map.
+    pub region: Region,
+    /// Its normal maps.
+    pub normal_maps: Vec<NormalFigure>,
+    /// Its parallax maps.
+    pub parallax_maps: Vec<ParallaxFigure>,
+    /// Blends of its normals with those of the detail.
+    pub blends: Vec<BlendFigure>,
+    /// Parallax methods, on `pixels` pixels each.
+    pub offsets: Vec<OffsetFigure>,
+    /// Pixels that each parallax method is measured on.
+    pub pixels: usize,
+    /// Ways to tangent space.
+    pub frames: Vec<FrameFigure>,
+    /// What each step buys and costs.
+    pub fronts: Vec<Front>,
+}
+
+impl MeasureOptions {
+    /// The longest side of the part that is measured, in texels.
+    fn side(&self) -> usize {
+        if self.quick { 256 } else { 2048 }
+    }
+
+    fn pixels(&self) -> usize {
+        if self.quick { 2048 } else { 16_384 }
+    }
+
+    /// The elevations that parallax is seen from, in degrees, from the steepest; that of the fronts is one.
+    pub fn elevations(&self) -> Vec<f64> {
+        let usual: &[f64] = if self.quick { &[60.0, 20.0] } else { &[80.0, 60.0, 45.0, 30.0, 20.0, 10.0] };
+        let mut elevations = usual.to_vec();
+        if !elevations.contains(&self.elevation) {
+            elevations.push(self.elevation);
+        }
+        elevations.sort_by(|a, b| b.total_cmp(a));
+        elevations
+    }
+}
+
+/// Measures a map. Errors are the same for the same options and seed, whatever the machine does besides; times are not.
+///
+/// A map longer than 2048 texels on a side (256 in a quick run) is measured in its middle, which then is a map of its own.
+/// The material of the parallax methods has the height map itself, 8-bit unorm normals and an 8-bit snorm parallax map;
+/// pixels and mesh points are drawn from the seed.
+///
+/// # Errors
+/// [`Error::Parameter`] for an option out of range; what a bake reports; [`Error::Cancelled`].
+pub fn measure(
+    measured: &Measured<'_>,
+    options: &MeasureOptions,
+    monitor: &Monitor,
+    watch: &mut dyn FnMut(Progress<'_>),
+) -> Result<Figures> {
+    if !(options.elevation > 0.0 && options.elevation < 90.0) {
+        return Err(Error::parameter("elevation", options.elevation, "above 0 and below 90 degrees"));
+    }
+    let (convention, runs, seed) = (options.convention, options.runs, options.seed);
+    let size = measured.heights.size();
+    let region = Region::middle(size, options.side());
+    let heights = region.of(measured.heights)?;
+    let axes = options.bake.scale.resolve(size)?;
+    let bake = BakeOptions { scale: scale_for(axes, heights.size())?, precision: Precision::Exact, ..options.bake };
+    let detail = match measured.detail {
+        Some(detail) => Region::middle(detail.size(), options.side()).of(detail)?,
+        None => quarter_turned(&heights)?,
+    };
+    let of_detail = BakeOptions { scale: scale_for(axes, detail.size())?, ..bake };
+    let layers = Layers { base: (&heights, bake), detail: (&detail, of_detail) };
+
+    let of = count(measured, options);
+    let steps = &mut Steps { done: 0, of, monitor, watch };
+    let (mut normal_maps, mut parallax_maps, mut blends) = (Vec::new(), Vec::new(), Vec::new());
+    for device in measured.devices {
+        normal_maps.extend(normal_figures(device, &heights, &bake, convention, runs, steps)?);
+        parallax_maps.extend(parallax_figures(device, &heights, &bake, runs, steps)?);
+        blends.extend(blend_figures(device, &layers, convention, runs, steps)?);
+    }
+    let material = Material::bake(&Baker::cpu(), &heights, &BakeOptions { normal: None, parallax: None, ..bake })?;
+    let pixels = options.pixels();
+    let offsets = offset_figures(&material, &options.elevations(), pixels, seed, runs, steps)?;
+    let frames = frame_figures(&material, measured.models, Extent { pixels, seed, runs }, steps)?;
+    let fronts = fronts(&normal_maps, &offsets, options.elevation);
+    Ok(Figures { region, normal_maps, parallax_maps, blends, offsets, pixels, frames, fronts })
+}
+
+/// Steps of a measurement.
+fn count(measured: &Measured<'_>, options: &MeasureOptions) -> usize {
+    let maps = PRECISIONS.len() * (normal_formats(options.convention).len() + parallax_formats().len());
+    let blends = blends::FORMATS.len() * blends::methods().len();
+    let meshes = SURFACES.len() + measured.models.len();
+    measured.devices.len() * (maps + blends) + options.elevations().len() + meshes
+}
+
+/// Storage of normal maps and time of bakes; fetches and time of parallax, whose largest errors are where one bump hides
+/// another, by their mean too.
+fn fronts(normal_maps: &[NormalFigure], offsets: &[OffsetFigure], elevation: f64) -> Vec<Front> {
+    let first = normal_maps.first().map(|figure| (&figure.stored.device, &figure.stored.precision));
+    let is_first = |figure: &&NormalFigure| first == Some((&figure.stored.device, &figure.stored.precision));
+    let by = Statistic::Percentile99;
+    let storage = normal_maps.iter().filter(is_first).map(|figure| {
+        let name = format!("{} {} {}", figure.stored.encoding, figure.stored.bits, figure.channels);
+        (name, figure.stored.bytes_per_texel as f64, by.of(&figure.error_degrees))
+    });
+    let bakes = normal_maps.iter().map(|figure| {
+        let name = format!("{}: {}", short_name(&figure.stored.device), figure.name());
+        (name, figure.stored.nanoseconds_per_texel, by.of(&figure.error_degrees))
+    });
+    let mut fronts = vec![
+        Front::new("storage of normal maps", by, ["bytes per texel", "degrees"], storage),
+        Front::new("time of bakes", by, ["ns per texel", "degrees"], bakes),
+    ];
+    for by in [Statistic::Percentile99, Statistic::Mean] {
+        let seen = || offsets.iter().filter(|figure| figure.elevation_degrees == elevation);
+        let fetches = seen().map(|it| (it.method.clone(), f64::from(it.fetches), by.of(&it.error_texels)));
+        let times = seen().map(|it| (it.method.clone(), it.nanoseconds_per_pixel, by.of(&it.error_texels)));
+        let from = |what: &str| format!("{what} of parallax, seen from {elevation} degrees");
+        fronts.push(Front::new(from("fetches"), by, ["fetches per pixel", "texels"], fetches));
+        fronts.push(Front::new(from("time"), by, ["ns per pixel", "texels"], times));
+    }
+    fronts
+}
+
+/// A device's name up to its first comma or bracket: `cpu`, `gpu llvmpipe`.
+fn short_name(device: &str) -> &str {
+    device.split([',', '(']).next().unwrap_or(device).trim()
+}

@@ -1,0 +1,119 @@
+//! The figures as pictures, SVG and PNG.
+
+mod axis;
+mod canvas;
+mod chart;
+mod labels;
+
+use super::markdown::capital;
+use super::{Figures, Statistic};
+use crate::error::Result;
+use axis::{Axis, Spacing};
+use canvas::Picture;
+use chart::{Chart, Series};
+
+/// A picture of some figures.
+pub(super) struct Plot {
+    /// Name of its files.
+    pub name: &'static str,
+    pub title: String,
+    pub svg: String,
+    pub png: Vec<u8>,
+}
+
+/// The names of the fronts' plots, in their order, and how their costs are spaced.
+const FRONTS: [(&str, Spacing); 6] = [
+    ("storage", Spacing::Linear),
+    ("bake-time", Spacing::Log),
+    ("parallax-fetches", Spacing::LogFromZero),
+    ("parallax-time", Spacing::Log),
+    ("parallax-fetches-mean", Spacing::LogFromZero),
+    ("parallax-time-mean", Spacing::Log),
+];
+
+/// The names of the plots over elevations and over steps.
+const LINES: [(&str, &str, Statistic); 2] = [
+    ("parallax-elevations", "parallax-steps", Statistic::Percentile99),
+    ("parallax-elevations-mean", "parallax-steps-mean", Statistic::Mean),
+];
+
+/// The methods whose lines are drawn over the elevation.
+const METHODS: [&str; 8] =
+    ["none", "welsh", "limited", "plane, limit 1", "plane, limit 3", "steps 1", "steps 4", "relief 16+5"];
+
+/// The names of all files.
+pub(super) fn plot_files() -> impl Iterator<Item = String> {
+    let names = FRONTS.map(|(name, _)| name).into_iter().chain(LINES.into_iter().flat_map(|(a, b, _)| [a, b]));
+    names.flat_map(|name| ["svg", "png"].map(|extension| format!("{name}.{extension}")))
+}
+
+/// All pictures of a measurement.
+pub(super) fn plots(figures: &Figures) -> Result<Vec<Plot>> {
+    let fronts = figures.fronts.iter().zip(FRONTS).map(|(front, (name, spacing))| {
+        let points = |are_best: bool| {
+            let chosen = front.candidates.iter().filter(move |it| it.is_on_front == are_best);
+            chosen.map(|it| (it.name.clone(), it.cost, it.error)).collect::<Vec<_>>()
+        };
+        let mut best = points(true);
+        best.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let chart = Chart {
+            title: front.title(),
+            x: Axis::new(front.cost_unit, spacing, front.candidates.iter().map(|it| it.cost)),
+            y: Axis::new(front.error_unit, Spacing::Log, front.candidates.iter().map(|it| it.error)),
+            lines: Vec::new(),
+            others: points(false).into_iter().map(|(_, cost, error)| (cost, error)).collect(),
+            front: best,
+        };
+        plot(name, &chart)
+    });
+    let lines = LINES.into_iter().flat_map(|(over_elevations, over_steps, by)| {
+        [plot(over_elevations, &elevations(figures, by)), plot(over_steps, &steps(figures, by))]
+    });
+    fronts.chain(lines).collect()
+}
+
+impl super::Front {
+    /// What its plot shows.
+    fn title(&self) -> String {
+        format!("{}: {}", capital(&self.name), self.by)
+    }
+}
+
+fn plot(name: &'static str, chart: &Chart) -> Result<Plot> {
+    let Picture { svg, png } = canvas::picture(name, |canvas| chart.draw(canvas))?;
+    Ok(Plot { name, title: chart.title.clone(), svg, png })
+}
+
+/// How wrong some methods are, over the elevation.
+fn elevations(figures: &Figures, by: Statistic) -> Chart {
+    let line = |method: &str| {
+        let of_method = figures.offsets.iter().filter(|figure| figure.method == method);
+        let points = of_method.map(|figure| (figure.elevation_degrees, by.of(&figure.error_texels))).collect();
+        Series { name: method.into(), points }
+    };
+    let title = format!("Offsets of parallax: {by}");
+    lines(title, ("elevation in degrees", Spacing::Linear), METHODS.map(line).into())
+}
+
+/// What more steps bring, for each elevation.
+fn steps(figures: &Figures, by: Statistic) -> Chart {
+    let mut elevations: Vec<f64> = figures.offsets.iter().map(|figure| figure.elevation_degrees).collect();
+    elevations.dedup();
+    let line = |elevation: &f64| {
+        let seen = figures.offsets.iter().filter(|figure| figure.elevation_degrees == *elevation);
+        let step = |figure: &super::OffsetFigure| {
+            let k: f64 = figure.method.strip_prefix("steps ")?.parse().ok()?;
+            Some((k, by.of(&figure.error_texels)))
+        };
+        Series { name: format!("{elevation} degrees"), points: seen.filter_map(step).collect() }
+    };
+    let title = format!("Offsets of parallax in k steps: {by}");
+    lines(title, ("steps k", Spacing::Linear), elevations.iter().map(line).collect())
+}
+
+fn lines(title: String, (x, spacing): (&str, Spacing), lines: Vec<Series>) -> Chart {
+    let points = || lines.iter().flat_map(|series| &series.points);
+    let x = Axis::new(x, spacing, points().map(|point| point.0));
+    let y = Axis::new("texels", Spacing::Log, points().map(|point| point.1));
+    Chart { title, x, y, lines, others: Vec::new(), front: Vec::new() }
+}

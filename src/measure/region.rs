@@ -1,0 +1,106 @@
+//! The part of a map that is measured.
+
+use crate::error::Result;
+use crate::exact::{AxisScale, Rational, Scale};
+use crate::map::{Grid, HeightMap, Heights, Size};
+use serde::Serialize;
+
+/// A part of a map, in texels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Region {
+    /// Its first column.
+    pub x: usize,
+    /// Its first row.
+    pub y: usize,
+    /// Texels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+}
+
+impl Region {
+    /// The middle of a map, no more than `limit` texels long on either side.
+    pub fn middle(size: Size, limit: usize) -> Self {
+        let [(x, width), (y, height)] = [size.width(), size.height()].map(|length| {
+            let part = length.min(limit);
+            ((length - part) / 2, part)
+        });
+        Self { x, y, width, height }
+    }
+
+    /// This part of a map, as a map of its own: its edges are its own too.
+    ///
+    /// # Errors
+    /// None for a region within the map.
+    pub fn of(self, map: &HeightMap) -> Result<HeightMap> {
+        let (columns, Self { x, y, width, height }) = (map.size().width(), self);
+        let at = |column: usize, row: usize| (y + row) * columns + x + column;
+        Ok(match map.heights() {
+            Heights::U8(codes) => Grid::from_fn(width, height, |i, j| codes[at(i, j)])?.into(),
+            Heights::U16(codes) => Grid::from_fn(width, height, |i, j| codes[at(i, j)])?.into(),
+            Heights::F32(heights) => Grid::from_fn(width, height, |i, j| heights[at(i, j)])?.try_into()?,
+        })
+    }
+}
+
+/// A map turned by a quarter, to the right.
+///
+/// # Errors
+/// None for a map that is there.
+pub fn quarter_turned(map: &HeightMap) -> Result<HeightMap> {
+    let (columns, rows) = (map.size().width(), map.size().height());
+    let at = |column: usize, row: usize| (rows - 1 - column) * columns + row;
+    Ok(match map.heights() {
+        Heights::U8(codes) => Grid::from_fn(rows, columns, |i, j| codes[at(i, j)])?.into(),
+        Heights::U16(codes) => Grid::from_fn(rows, columns, |i, j| codes[at(i, j)])?.into(),
+        Heights::F32(heights) => Grid::from_fn(rows, columns, |i, j| heights[at(i, j)])?.try_into()?,
+    })
+}
+
+/// What is `axes` for a map of `size`.
+pub(super) fn scale_for(axes: AxisScale, size: Size) -> Result<Scale> {
+    if axes.x == axes.y {
+        return Ok(Scale::texels(Rational::new(axes.x.into(), axes.q.into())?));
+    }
+    // A scale of x/q texels along `width` of them is one of 1 along width q/x.
+    let extent = |texels: usize, part: i32| Rational::new(texels as i64 * i64::from(axes.q), i64::from(part).abs());
+    let depth = if axes.x < 0 { -1 } else { 1 };
+    Ok(Scale::physical(extent(size.width(), axes.x)?, extent(size.height(), axes.y)?, depth.into()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_middle_of_a_map_is_cut_out() {
+        let map = HeightMap::from(Grid::from_fn(5, 3, |x, y| (10 * y + x) as u8).unwrap());
+        let region = Region::middle(map.size(), 2);
+        assert_eq!(region, Region { x: 1, y: 0, width: 2, height: 2 });
+        assert_eq!(region.of(&map).unwrap(), Grid::new(2, 2, vec![1u8, 2, 11, 12]).unwrap().into());
+        assert_eq!(Region::middle(map.size(), 9).of(&map).unwrap(), map);
+    }
+
+    #[test]
+    fn a_quarter_turn_takes_the_top_row_to_the_right() {
+        let map = HeightMap::from(Grid::new(3, 2, vec![1u16, 2, 3, 4, 5, 6]).unwrap());
+        assert_eq!(quarter_turned(&map).unwrap(), Grid::new(2, 3, vec![4u16, 1, 5, 2, 6, 3]).unwrap().into());
+    }
+
+    #[test]
+    fn a_part_keeps_the_scale_of_the_whole() {
+        let whole = Size::new(1000, 600).unwrap();
+        let part = Size::new(512, 256).unwrap();
+        for scale in [
+            Scale::texels("7/3".parse::<Rational>().unwrap()),
+            Scale::texels(-5),
+            Scale::physical(2.into(), 3.into(), "0.1".parse().unwrap()),
+            Scale::physical(2.into(), 3.into(), "-0.1".parse().unwrap()),
+        ] {
+            let axes = scale.resolve(whole).unwrap();
+            let of_part = scale_for(axes, part).unwrap().resolve(part).unwrap();
+            let ratio = |axes: AxisScale| [axes.x, axes.y].map(|part| f64::from(part) / f64::from(axes.q));
+            assert_eq!(ratio(of_part), ratio(axes), "{scale}");
+        }
+    }
+}
