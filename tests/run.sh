@@ -50,6 +50,7 @@ packages=(
     gcc g++ libc6-dev # g++ for meshopt, beside which tangents are measured
     libvulkan1 mesa-vulkan-drivers
     libegl1 libgles2 libgl1-mesa-dri
+    glslang-tools spirv-tools # compilers of the exported shaders
     chromium # the page of `texbake verify --html`, and SwiftShader's Vulkan driver
 )
 # The Khronos validator of glTF. Some systems have npm in the package of node.
@@ -122,6 +123,13 @@ find_browser() {
         command -v "$name" && return 0
     done
     return 1
+}
+
+# The compilers that the exported shaders are given to.
+require_shader_tools() {
+    # A tool that is missing is a failure, not a test passed over.
+    export TEXBAKE_REQUIRE_SHADER_TOOLS=1
+    command -v glslangValidator && command -v spirv-val
 }
 
 # The maps of real materials, from the source package of pypbr on PyPI: fetched once, kept with the build, never in git.
@@ -266,6 +274,7 @@ fi
 check "packages" install_packages
 check "software devices" choose_software_devices
 check "browser" find_browser
+check "shader tools" require_shader_tools
 check "materials" fetch_materials
 check "glTF validator" fetch_validator
 check "models" fetch_models

@@ -10,7 +10,7 @@
 //
 // Their twins: src/shading/stepped_offset.rs.
 
-fn step_scale(scale: f32, size: vec2<f32>, k: u32, exaggeration: f32) -> vec2<f32> {
+fn step_scale(scale: vec2<f32>, size: vec2<f32>, k: u32, exaggeration: f32) -> vec2<f32> {
     return exaggeration * scale / (2.0 * f32(k) * size);
 }
 

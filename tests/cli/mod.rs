@@ -13,5 +13,6 @@ mod parallax;
 mod plan_settings;
 mod report;
 mod settings;
+mod shaders;
 pub mod support;
 pub mod tangents;

@@ -17,7 +17,8 @@ pub fn assert_offset(n: [f32; 3], h: f32, v: [f32; 3], limit: f32, expected: [f3
     #[cfg(feature = "gpu")]
     {
         let view = crate::shading::plane_offset::View { n, h, v, limit };
-        crate::shading::plane_offset::FUNCTION.assert_on_every_device(&[view.arguments()], &[expected], 32);
+        let call = crate::support::Call { arguments: view.arguments(), expected, bounds: [0.0; 2] };
+        crate::shading::plane_offset::FUNCTION.assert_on_every_device(&[call], 32);
     }
 }
 

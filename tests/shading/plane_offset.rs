@@ -171,12 +171,18 @@ fn offsets_are_continuous_through_the_plane() {
 pub const FUNCTION: crate::support::ShaderFunction<'static> = crate::support::ShaderFunction {
     wgsl: include_str!("../../kernels/shading/plane_offset.wgsl"),
     call: "plane_offset(vec3(a[0], a[1], a[2]), a[3], vec3(a[4], a[5], a[6]), a[7])",
+    texture: None,
 };
 
 /// Arguments and exact results.
 #[cfg(feature = "gpu")]
-fn calls(views: impl Iterator<Item = View>) -> (Vec<[f32; 8]>, Vec<[f32; 2]>) {
-    views.map(|view| (view.arguments(), view.offset().map(|part| part as f32))).unzip()
+fn calls(views: impl Iterator<Item = View>) -> Vec<crate::support::Call<8, 2>> {
+    let call = |view: View| crate::support::Call {
+        arguments: view.arguments(),
+        expected: view.offset().map(|part| part as f32),
+        bounds: [0.0; 2],
+    };
+    views.map(call).collect()
 }
 
 /// An f32 is at least u of itself from the next one, and the nearest to the exact answer is half of one off.
@@ -186,11 +192,11 @@ fn every_device_is_within_its_bound_of_f64() {
     let mut seen = 0;
     for bound in [32.0, 64.0, 128.0, 256.0] {
         let is_within = |view: &View| (bound / 2.0..bound).contains(&view.bound(DEVICE));
-        let (arguments, expected) = calls(views().into_iter().filter(is_within));
-        if !arguments.is_empty() {
-            FUNCTION.assert_on_every_device(&arguments, &expected, bound as u32 + 1);
+        let calls = calls(views().into_iter().filter(is_within));
+        if !calls.is_empty() {
+            FUNCTION.assert_on_every_device(&calls, bound as u32 + 1);
         }
-        seen += arguments.len();
+        seen += calls.len();
     }
     assert!(seen > 19_000, "{seen}");
 }
@@ -199,12 +205,12 @@ fn every_device_is_within_its_bound_of_f64() {
 #[cfg(feature = "gpu")]
 #[test]
 fn another_formula_on_a_device_is_noticed() {
-    let (arguments, expected) = calls(views().into_iter().take(500));
+    let calls = calls(views().into_iter().take(500));
     for (from, to) in [("n.z * v.xy", "v.xy"), ("dot(along, along)) / limit", "0.0)"), ("h * (", "-h * (")] {
         assert!(FUNCTION.wgsl.contains(from), "{from}");
         let text = FUNCTION.wgsl.replacen(from, to, 1);
         let changed = crate::support::ShaderFunction { wgsl: &text, ..FUNCTION };
-        let comparisons = changed.on_every_device(&arguments, &expected, 257);
+        let comparisons = changed.on_every_device(&calls, 257);
         assert!(comparisons.iter().all(|(_, comparison)| comparison.differing > 0), "{from}");
     }
 }

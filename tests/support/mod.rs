@@ -34,7 +34,7 @@ pub use mikktspace::{bevy_tangents, meshopt_tangents};
 pub use pairs::{every_difference_pair, greatest_sum, map_of_pairs};
 pub use random::Random;
 #[cfg(feature = "gpu")]
-pub use shaders::ShaderFunction;
+pub use shaders::{Call, ShaderFunction, Texels};
 
 use texbake::{
     BlendInputs, BlendMethod, BlendOptions, Channels, Convention, Depth, Edge, Edges, Encoding, Filter, Grid,

@@ -1,0 +1,228 @@
+//! pixel_cotangent_frame by the derivatives of real pixels: triangles that are drawn on every device, straight ahead and in
+//! perspective, mirrored and from behind.
+//!
+//! On a triangle the texture coordinates are an affine function of the position, in perspective, too; so every difference,
+//! fine or coarse, has the gradients of the triangle's edges. What remains is the interpolation: attributes of at most 4
+//! that are off by 2^-20 of that, over differences of a pixel of at least 1/64, are off by 2^-11 each; the frame is off by
+//! a few times as much.
+
+use super::examined::f64s::{self, Vector};
+use super::examined::text_of;
+use crate::support::every_baker;
+use texbake::gpu::wgpu;
+
+/// Pixels along each side of the picture.
+const SIDE: u32 = 32;
+
+/// Degrees that a frame may be off: ten times 2^-11, in degrees.
+const BOUND: f64 = 0.28;
+
+/// A triangle: clip positions that cover the picture, positions and texture coordinates at the corners.
+struct Triangle {
+    clip: [[f32; 4]; 3],
+    p: [[f32; 3]; 3],
+    uv: [[f32; 2]; 3],
+    n: [f32; 3],
+}
+
+/// What a pixel gives: T and B of the general frame, T of the shortcut.
+type Pixel = [Vector; 3];
+
+const DRAW: &str = "
+struct Corner { clip: vec4<f32>, p: vec4<f32>, uv: vec4<f32>, n: vec4<f32> }
+struct Varying { @builtin(position) at: vec4<f32>, @location(0) p: vec3<f32>, @location(1) uv: vec2<f32> }
+@group(0) @binding(0) var<uniform> corners: array<Corner, 3>;
+@group(0) @binding(1) var<storage, read_write> pixels: array<vec4<f32>>;
+@vertex fn corner(@builtin(vertex_index) i: u32) -> Varying {
+    return Varying(corners[i].clip, corners[i].p.xyz, corners[i].uv.xy);
+}
+@fragment fn pixel(v: Varying) -> @location(0) vec4<f32> {
+    let n = corners[0].n.xyz;
+    let frame = pixel_cotangent_frame(n, v.p, v.uv);
+    let short = without_perspective(n, dpdx(v.p), dpdy(v.p), dpdx(v.uv), dpdy(v.uv));
+    let at = 3u * (u32(v.at.y) * 32u + u32(v.at.x));
+    pixels[at] = vec4<f32>(frame[0], 1.0);
+    pixels[at + 1u] = vec4<f32>(frame[1], 1.0);
+    pixels[at + 2u] = vec4<f32>(short[0], 1.0);
+    return vec4<f32>(frame[2], 1.0);
+}";
+
+/// Devices of the same names as the bakers'.
+fn devices() -> Vec<(&'static str, wgpu::Device, wgpu::Queue)> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let names = every_baker().iter().map(|subject| subject.name).filter_map(|name| Some((name, name.split_once(':')?)));
+    let open = |(name, (api, adapter)): (&'static str, (&str, &str))| {
+        let backends = if api == "gl" { wgpu::Backends::GL } else { wgpu::Backends::VULKAN };
+        let adapters = pollster::block_on(instance.enumerate_adapters(backends));
+        let adapter = adapters.into_iter().find(|it| it.get_info().name.to_lowercase().contains(adapter)).unwrap();
+        let limits = wgpu::Limits::downlevel_defaults();
+        let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
+        (name, device, queue)
+    };
+    names.map(open).collect()
+}
+
+/// The pixels of a triangle that covers all of them.
+fn draw(device: &wgpu::Device, queue: &wgpu::Queue, library: &str, triangle: &Triangle) -> Vec<Pixel> {
+    use wgpu::util::{BufferInitDescriptor, DeviceExt};
+    let pad = |corner: usize| {
+        let Triangle { clip, p, uv, n } = triangle;
+        let four = |part: &[f32]| std::array::from_fn::<f32, 4, _>(|at| part.get(at).copied().unwrap_or_default());
+        [clip[corner], four(&p[corner]), four(&uv[corner]), four(n)].concat()
+    };
+    let corners: Vec<u8> = (0..3).flat_map(pad).flat_map(f32::to_le_bytes).collect();
+    let poison = vec![f32::NAN; (3 * 4 * SIDE * SIDE) as usize];
+    let poison: Vec<u8> = poison.into_iter().flat_map(f32::to_le_bytes).collect();
+    let buffer =
+        |contents: &[u8], usage| device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
+    let corners = buffer(&corners, wgpu::BufferUsages::UNIFORM);
+    let pixels = buffer(&poison, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+    let read = buffer(&poison, wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+    let target = device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+        view_formats: &[],
+    });
+    let source = wgpu::ShaderSource::Wgsl(format!("{library}{DRAW}").into());
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: None,
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("corner"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("pixel"),
+            compilation_options: Default::default(),
+            targets: &[Some(wgpu::TextureFormat::Rgba8Unorm.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    });
+    let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: corners.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: pixels.as_entire_binding() },
+        ],
+    });
+    let mut encoder = device.create_command_encoder(&Default::default());
+    let view = target.create_view(&Default::default());
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations::default(),
+        })],
+        ..Default::default()
+    });
+    pass.set_pipeline(&pipeline);
+    pass.set_bind_group(0, &bindings, &[]);
+    pass.draw(0..3, 0..1);
+    drop(pass);
+    encoder.copy_buffer_to_buffer(&pixels, 0, &read, 0, pixels.size());
+    queue.submit([encoder.finish()]);
+    read.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
+    device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+    let bytes = read.get_mapped_range(..).expect("mapped").to_vec();
+    let floats: Vec<f64> =
+        bytes.chunks_exact(4).map(|word| f32::from_le_bytes(word.try_into().unwrap()).into()).collect();
+    floats.chunks_exact(12).map(|pixel| [0, 4, 8].map(|at| [pixel[at], pixel[at + 1], pixel[at + 2]])).collect()
+}
+
+/// T and B of the triangle's own edges, by elimination, the longer one of length one.
+fn truth(Triangle { p, uv, n, .. }: &Triangle) -> [Vector; 2] {
+    let edge = |corner: usize| [0, 1, 2].map(|axis| f64::from(p[corner][axis]) - f64::from(p[0][axis]));
+    let growth = |corner: usize, axis: usize| f64::from(uv[corner][axis]) - f64::from(uv[0][axis]);
+    let rows = [edge(1), edge(2), n.map(f64::from)];
+    let [t, b] = [0, 1].map(|axis| f64s::solve(rows, [growth(1, axis), growth(2, axis), 0.0]));
+    let longest = f64s::length(t).max(f64s::length(b));
+    [t, b].map(|vector| f64s::times(1.0 / longest, vector))
+}
+
+/// Straight ahead, or as a floor that goes away: w grows to 4 up the picture; from the front, or from behind, by exchanged
+/// corners; u turned round or not; the mapping skewed.
+fn triangles() -> Vec<(String, Triangle)> {
+    let mut triangles = Vec::new();
+    for perspective in [false, true] {
+        for from_behind in [false, true] {
+            for mirrored in [false, true] {
+                // Corners of a triangle that covers the picture from (-1, -1) to (1, 1).
+                let w = if perspective { [1.0, 1.0, 4.0] } else { [1.0; 3] };
+                let corner = |x: f32, y: f32, w: f32| [x * w, y * w, 0.5 * w, w];
+                let mut clip = [corner(-1.0, -1.0, w[0]), corner(3.0, -1.0, w[1]), corner(-1.0, 3.0, w[2])];
+                let mut p = [[-1.0, -1.0, 0.25], [3.0, -1.0, 0.5], [-1.0, 3.0, 1.0]];
+                let u = if mirrored { -1.0 } else { 1.0 };
+                let mut uv = p.map(|[x, y, _]: [f32; 3]| [u * (x + 0.5 * y), 0.75 * y]);
+                if from_behind {
+                    clip.swap(1, 2);
+                    p.swap(1, 2);
+                    uv.swap(1, 2);
+                }
+                // Of the interpolated normal, which leans from the face's.
+                let n = [0.0, 0.28, 0.96];
+                triangles.push((
+                    format!("perspective {perspective}, from behind {from_behind}, mirrored {mirrored}"),
+                    Triangle { clip, p, uv, n },
+                ));
+            }
+        }
+    }
+    triangles
+}
+
+#[test]
+fn pixels_have_the_frame_of_their_triangle() {
+    for (name, device, queue) in devices() {
+        for (what, triangle) in triangles() {
+            let [t, b] = truth(&triangle);
+            let pixels = draw(&device, &queue, text_of("cotangent_frame"), &triangle);
+            for (at, [got_t, got_b, _]) in pixels.iter().enumerate() {
+                for (got, exact) in [(got_t, t), (got_b, b)] {
+                    let off = f64s::angle(*got, exact);
+                    let ratio = f64s::length(*got) / f64s::length(exact);
+                    assert!(
+                        off < BOUND && (ratio - 1.0).abs() < 0.005,
+                        "{name}: {what}: pixel {at}: {got:?}, {exact:?}, {off}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// The shortcut has another direction where pixels are longer than wide; Schüler's own sign points the other way, since
+/// dpdy goes down the picture; and exchanged derivatives are noticed.
+#[test]
+fn shortcuts_and_wrong_signs_are_seen_in_pixels() {
+    for (name, device, queue) in devices() {
+        for (what, triangle) in triangles() {
+            let [t, _] = truth(&triangle);
+            let worst = |library: &str, part: usize| {
+                let pixels = draw(&device, &queue, library, &triangle);
+                pixels.iter().map(|pixel| f64s::angle(pixel[part], t)).fold(0.0, f64::max)
+            };
+            let text = text_of("cotangent_frame");
+            assert!(worst(text, 2) > 5.0, "{name}: {what}: the shortcut is as good");
+            let unsigned = text.replacen("select(-1.0, 1.0, dot(dp1, dp2perp) >= 0.0)", "1.0", 1);
+            assert!(unsigned != text && worst(&unsigned, 0) > 179.0, "{name}: {what}: the sign");
+            let exchanged = text.replacen("dpdx(uv), dpdy(uv))", "dpdy(uv), dpdx(uv))", 1);
+            assert!(exchanged != text && worst(&exchanged, 0) > 5.0, "{name}: {what}: exchanged");
+        }
+    }
+}
