@@ -13,9 +13,9 @@ use half::f16;
 use std::time::Duration;
 
 /// What a dispatch takes at least, beside one that computes nothing, so that a clock can tell.
-const LONG_ENOUGH: Duration = Duration::from_millis(10);
+const LONG_ENOUGH: Duration = Duration::from_millis(20);
 
-/// Invocations for each pixel, and offsets for each invocation, at most.
+/// Invocations for each pixel, and offsets for each invocation, at most: powers of four.
 const MOST: (u32, u32) = (64, 1024);
 
 /// The kernel, and the functions that it calls.
@@ -42,14 +42,13 @@ pub(super) fn offset_times(
     steps.next(&format!("parallax on {}", device.name()))?;
     let views = Views::at_elevation(elevation, pixels, seed);
     let scene = Scene::new(gpu.compile(TEXT, "time_offsets", &[])?, material, &views, runs);
-    let empty = scene.time(ParallaxMethod::None, 1, 0, runs)?;
     let time = |method: ParallaxMethod| {
         steps.monitor.check()?;
         Ok(OffsetTime {
             device: device.name(),
             elevation_degrees: elevation,
             method: method.to_string(),
-            nanoseconds_per_pixel: scene.nanoseconds(method, empty)?,
+            nanoseconds_per_pixel: scene.nanoseconds(method)?,
         })
     };
     parallax_methods().into_iter().map(time).collect()
@@ -92,19 +91,21 @@ impl<'a> Scene<'a> {
     }
 
     /// Nanoseconds that a pixel takes, by dispatches that grow until they are long enough.
-    fn nanoseconds(&self, method: ParallaxMethod, empty: Duration) -> Result<f64> {
+    fn nanoseconds(&self, method: ParallaxMethod) -> Result<f64> {
         let (mut copies, mut rounds) = (1, 1);
-        while self.time(method, copies, rounds, 1)? < empty + LONG_ENOUGH && (copies, rounds) != MOST {
-            if copies < MOST.0 { copies *= 2 } else { rounds *= 2 }
+        loop {
+            let without = self.time(method, copies, 0)?;
+            let time = self.time(method, copies, rounds)?.saturating_sub(without);
+            if time >= LONG_ENOUGH || (copies, rounds) == MOST {
+                let offsets = self.views.len() as f64 / 5.0 * f64::from(copies) * f64::from(rounds);
+                return Ok(time.as_secs_f64() * 1e9 / offsets);
+            }
+            *(if copies < MOST.0 { &mut copies } else { &mut rounds }) *= 4;
         }
-        let without = self.time(method, copies, 0, self.runs)?;
-        let time = self.time(method, copies, rounds, self.runs)?.saturating_sub(without);
-        let offsets = self.views.len() as f64 / 5.0 * f64::from(copies) * f64::from(rounds);
-        Ok(time.as_secs_f64() * 1e9 / offsets)
     }
 
     /// How long a dispatch takes, with all that goes to the device and comes back.
-    fn time(&self, method: ParallaxMethod, copies: u32, rounds: u32, runs: usize) -> Result<Duration> {
+    fn time(&self, method: ParallaxMethod, copies: u32, rounds: u32) -> Result<Duration> {
         let pixels = (self.views.len() / 5) as u32;
         let (kind, steps, bisections, limit) = match method {
             ParallaxMethod::None => (0, 0, 0, 0.0),
@@ -128,6 +129,6 @@ impl<'a> Scene<'a> {
             texture(3),
             (Binding::Sampler, &[]),
         ];
-        timed(runs, || self.pipeline.run(&buffers, [(pixels * copies).div_ceil(64), 1, 1]))
+        timed(self.runs, || self.pipeline.run(&buffers, [(pixels * copies).div_ceil(64), 1, 1]))
     }
 }
