@@ -26,6 +26,7 @@
 //! - [`Baker::tangents`] computes the tangents of a [`Mesh`]; [`io::Model`] reads meshes from glTF and OBJ files, and
 //!   writes them with tangents.
 //! - [`inspect`] finds what is wrong with a normal map, mends it, and compares two.
+#![cfg_attr(feature = "cli", doc = "- [`plan`] bakes no more than a scene needs.")]
 //! - [`shading`] has the twins of what a shader does with the maps, [`material`] samples them as a scene does.
 #![cfg_attr(feature = "gpu", doc = "- [`gpu::Hosted`] bakes on the caller's own wgpu device, without a readback.")]
 //!
@@ -140,6 +141,9 @@ pub mod measure;
 mod mesh;
 mod names;
 mod ops;
+pub mod plan;
+#[cfg(feature = "cli")]
+pub mod preview;
 pub mod shading;
 mod split_mix;
 pub mod stream;

@@ -31,8 +31,8 @@ pub fn assert_heights(extension: &str, data: &[u8]) {
     let options = ReadOptions {
         channel: CHANNELS[choice % 8].map(|name| name.parse().expect("any name")),
         color_space: if choice / 8 % 4 == 3 { ColorSpace::Srgb } else { ColorSpace::Linear },
-        raw: None,
         max_bytes: MAX_BYTES,
+        ..ReadOptions::default()
     };
     let path = file(&format!("h.{extension}"), bytes);
     if let Some(map) = heights(&path, &options, choice / 32) {

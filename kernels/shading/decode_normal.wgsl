@@ -19,11 +19,11 @@ fn decode_snorm(s: vec3<f32>) -> vec3<f32> {
     return max(s, vec3<f32>(-1.0));
 }
 
-fn decode_biased_8(s: vec3<f32>) -> vec3<f32> {
+fn decode_biased_8_bit(s: vec3<f32>) -> vec3<f32> {
     return max((255.0 * s - 128.0) / 127.0, vec3<f32>(-1.0));
 }
 
-fn decode_biased_16(s: vec3<f32>) -> vec3<f32> {
+fn decode_biased_16_bit(s: vec3<f32>) -> vec3<f32> {
     return max((65535.0 * s - 32768.0) / 32767.0, vec3<f32>(-1.0));
 }
 

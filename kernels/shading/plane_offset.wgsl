@@ -18,7 +18,7 @@ fn plane_offset(n: vec3<f32>, h: f32, v: vec3<f32>, limit: f32) -> vec2<f32> {
     let along = n.z * v.xy;
     let rise = max(dot(n, v), sqrt(dot(along, along)) / limit);
     if (limit <= 0.0 || rise <= 0.0) {
-        return vec2<f32>();
+        return vec2<f32>(0.0);
     }
     return h * (along / rise);
 }

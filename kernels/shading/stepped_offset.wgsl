@@ -19,7 +19,7 @@ fn stepped_offset(
     uv: vec2<f32>, v: vec3<f32>, u: vec2<f32>, k: u32,
 ) -> vec2<f32> {
     let step = v.xy * u;
-    var offset = vec2<f32>();
+    var offset = vec2<f32>(0.0);
     for (var i = 0u; i < k; i++) {
         let sample = textureSampleLevel(map, map_sampler, uv + offset, level).r;
         offset += step * (sample * decode.x + decode.y);

@@ -7,6 +7,7 @@ use super::role::{Role, check_same_size};
 use super::targets::{self, Files};
 use crate::baker::{Baked, Baker};
 use crate::error::{Error, Result};
+use crate::exact::Scale;
 use crate::io::{ReadOptions, create_normals, create_parallax};
 use crate::map::{Maps, Size};
 use crate::ops::bake::BakeOptions;
@@ -25,9 +26,9 @@ pub struct Job {
     pub outputs: Maps<PathBuf>,
     /// A normal map from which a parallax map, baked alone, takes its normals; `None`: those of the heights.
     pub normals: Option<NormalInput>,
-    /// How the input is read.
+    /// How the input is read, and by which factor it is reduced.
     pub read: ReadOptions,
-    /// What is baked. Filter and edges do not matter to a parallax map with a given normal map.
+    /// What is baked. A scale in texels is one of texels of the file, whatever it is reduced by. Filter and edges do not matter to a parallax map with a given normal map.
     pub options: BakeOptions,
     /// Where it runs.
     pub baker: Arc<Baker>,
@@ -133,7 +134,8 @@ impl Job {
             opened(rows.size());
             Ok(rows)
         };
-        let baked = self.baker.bake_rows(&open, &|size| self.create(size), &self.options, monitor);
+        let options = BakeOptions { scale: self.scale()?, ..self.options };
+        let baked = self.baker.bake_rows(&open, &|size| self.create(size), &options, monitor);
         warnings.extend(heights.warnings(baked.is_ok()));
         warnings.extend(baked.as_ref().ok().and_then(inexact_scale));
         baked
@@ -162,7 +164,7 @@ impl Job {
         };
         let create = |size| {
             // A scale out of range is told before there is a file.
-            self.options.scale.resolve(size)?;
+            self.scale()?.resolve(size)?;
             let Maps { parallax, .. } = self.create(size)?;
             parallax.ok_or_else(|| Error::parameter("maps", "none", "parallax"))
         };
@@ -170,10 +172,15 @@ impl Job {
         warnings.extend(heights.warnings(ran.is_ok()));
         warnings.extend(normals.warnings(ran.is_ok()).into_iter().map(|text| format!("the normal map {text}")));
         let (ran, size) = ran?;
-        let scale = self.options.scale.resolve(size)?;
+        let scale = self.scale()?.resolve(size)?;
         let baked = Baked { ran, size, height_type: heights.height_type(), scale };
         warnings.extend(inexact_scale(&baked));
         Ok(baked)
+    }
+
+    /// The scale over the map as it is read.
+    fn scale(&self) -> Result<Scale> {
+        self.options.scale.shrunk(self.read.shrink)
     }
 
     /// A sink for each output.

@@ -28,6 +28,8 @@ pub struct Report {
     pub errors: Vec<String>,
     /// The files, in the order in which they were found.
     pub files: Vec<FileReport>,
+    /// Height maps that get no map, as the settings say.
+    pub left_out: Vec<String>,
 }
 
 /// Sums over the files of a run.
@@ -81,9 +83,9 @@ pub struct FileReport {
     pub outputs: Outputs,
     /// What was asked for, by the names of the command line.
     pub options: Options,
-    /// Type of the heights: `u8`, `u16`, `f32`.
+    /// Type of the heights that were baked: `u8`, `u16`, `f32`; reduced ones are `u16` or `f32`.
     pub depth: Option<String>,
-    /// The scale that was used, in texels.
+    /// The scale that was used, in texels of the map as it was baked.
     pub scale: Option<UsedScale>,
     /// What a shader needs to know of the parallax map, if there is one.
     pub parallax: Option<ParallaxNumbers>,
@@ -171,6 +173,8 @@ pub struct Options {
     pub color_space: String,
     /// The layout of a file without a header.
     pub raw: Option<String>,
+    /// The factor by which the map was reduced.
+    pub shrink: u32,
     /// The limit on the decoded size.
     pub max_bytes: u64,
 }
@@ -187,8 +191,8 @@ pub struct UsedScale {
 }
 
 impl Report {
-    /// What `jobs` came to in `time`; `errors` are those of the search, and the numbers of parallax maps are for
-    /// `iterations` steps.
+    /// What `jobs` came to in `time`, nothing left out; `errors` are those of the search, and the numbers of parallax
+    /// maps are for `iterations` steps.
     pub fn new(
         jobs: &[Job],
         outcomes: &[Outcome],
@@ -204,6 +208,7 @@ impl Report {
             totals: Totals::new(outcomes, time),
             errors: errors.iter().map(ToString::to_string).collect(),
             files: jobs.iter().zip(outcomes).map(file).collect(),
+            left_out: Vec::new(),
         }
     }
 }
@@ -367,6 +372,7 @@ impl Options {
             channel: read.channel.as_ref().map(ToString::to_string),
             color_space: read.color_space.to_string(),
             raw: read.raw.map(|layout| layout.to_string()),
+            shrink: read.shrink.get(),
             max_bytes: read.max_bytes,
         }
     }

@@ -1,11 +1,11 @@
 //! The command line.
 
 use super::settings::{CodeChoice, Device, HeightInput, NormalOutput, Settings, Slope};
-use super::values::{ByteSize, WeightPair, choice, iterations, value};
+use super::values::{ByteSize, MapChoice, WeightPair, choice, iterations, value};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
-use texbake::batch::{MapKind, NameTemplate, OUTPUT_EXTENSIONS};
+use texbake::batch::{NameTemplate, OUTPUT_EXTENSIONS};
 use texbake::io::Channel;
 use texbake::{Channels, Convention, Depth, Encoding, Precision, Rational};
 
@@ -18,10 +18,13 @@ Examples:
   texbake bake textures --out baked --maps normal,parallax
   texbake normal height.png -o normal.png --scale 24
   texbake parallax height.png -o parallax.png --scale 24 --json
+  texbake plan scene.toml -o texbake.toml --explain
   texbake blend base_normal.png detail_normal.png -o normal.png --tile
   texbake tangents model.glb -o model_t.glb
+  texbake preview height.png -o sheet.png --scale 24
   texbake devices
   texbake verify
+  texbake shaders --lang glsl -o shaders
 
 Exit status: 0 all went well, 1 something failed, 2 wrong arguments or
 settings, 130 interrupted.")]
@@ -35,13 +38,16 @@ pub enum Command {
     Normal(Box<NormalArguments>),
     Parallax(Box<ParallaxArguments>),
     Bake(Box<BakeArguments>),
+    Plan(Box<super::plan::PlanArguments>),
     Blend(Box<BlendArguments>),
     Tangents(Box<super::tangents::TangentsArguments>),
     Check(Box<super::check::CheckArguments>),
     Diff(Box<super::diff::DiffArguments>),
+    Preview(Box<super::preview::PreviewArguments>),
     Devices(DevicesArguments),
     Verify(Box<super::verify::VerifyArguments>),
     Measure(Box<super::measure::MeasureArguments>),
+    Shaders(super::shaders::ShadersArguments),
 }
 
 /// Bake one height map into a normal map
@@ -176,6 +182,11 @@ name of an option:
 What a shader needs to know of a parallax map goes into the --report; see
 texbake parallax --help.
 
+texbake plan writes a texbake.toml of what a scene needs, with predictions of
+what its maps are off by. --check-plan reads the maps that were baked, measures
+them again, and ends with 1 if a prediction is broken; --check-plan=only bakes
+nothing.
+
 Examples:
   texbake bake textures --out baked
   texbake bake textures --out baked --maps normal,parallax --scale 24
@@ -199,6 +210,11 @@ pub struct BakeArguments {
     #[arg(long, value_name = "FILE", help_heading = "Files")]
     pub config: Option<PathBuf>,
 
+    /// Measure the maps against the predictions of texbake plan, after the bake, or only those that are there
+    #[arg(long, value_enum, num_args = 0..=1, require_equals = true, default_missing_value = "after")]
+    #[arg(value_name = "WHEN", help_heading = "Files")]
+    pub check_plan: Option<CheckPlan>,
+
     /// Files baked at the same time, each with its own rows in memory [default: one more than the cores]
     #[arg(short, long, value_name = "N", help_heading = "Where it runs")]
     pub jobs: Option<NonZeroUsize>,
@@ -214,13 +230,22 @@ pub struct BakeArguments {
     pub reporting: Reporting,
 }
 
+/// When the predictions of a plan are checked.
+#[derive(ValueEnum, Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CheckPlan {
+    /// After the bake.
+    After,
+    /// Nothing is baked.
+    Only,
+}
+
 /// What may differ from file to file in a folder.
 #[derive(Args, Debug, Clone, Default, PartialEq)]
 pub struct PerFile {
-    /// Maps to bake: normal, parallax or normal,parallax [default: normal]
-    #[arg(long, value_delimiter = ',', value_parser = choice::<MapKind>(MapKind::NAMES), help_heading = "Files")]
+    /// Maps to bake: normal, parallax or normal,parallax; none leaves the file out [default: normal]
+    #[arg(long, value_delimiter = ',', value_parser = choice::<MapChoice>(MapChoice::NAMES), help_heading = "Files")]
     #[arg(hide_possible_values = true)]
-    pub maps: Option<Vec<MapKind>>,
+    pub maps: Option<Vec<MapChoice>>,
 
     /// Output names; {stem} is the input's without suffix, {map} is normal or parallax, {size} the input's _2k or
     /// nothing [default: {stem}_{map}{size}]

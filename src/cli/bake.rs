@@ -1,12 +1,14 @@
 //! `texbake bake`: folders.
 
-use super::args::{BakeArguments, PerFile};
+use super::args::{BakeArguments, CheckPlan, PerFile};
+use super::check_plan::PlanCheck;
 use super::config::Config;
 use super::exit::{Exit, Failure};
 use super::interruptible;
 use super::print::{file_table, put, say, summary};
 use super::progress::{Progress, Verbosity};
 use super::settings::{CodeChoice, Place, open_baker};
+use super::values::MapChoice;
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -29,7 +31,11 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     if let Some(config) = config.as_ref().filter(|_| !reporting.quiet) {
         describe(config, &found);
     }
-    let jobs = jobs(arguments, config.as_ref(), &found)?;
+    let (jobs, left_out) = jobs(arguments, config.as_ref(), &found)?;
+    let check = arguments.check_plan.map(|_| PlanCheck::new(config.as_ref(), &found, &jobs)).transpose()?;
+    if let (Some(check), Some(CheckPlan::Only)) = (&check, arguments.check_plan) {
+        return check.run(reporting.quiet);
+    }
     let settings = config.as_ref().map(|config| config.path.as_path());
     let files = Job::all_files(&jobs);
     let report_file = reporting.report.as_deref().map(|path| JsonFile::create("report", path, &files, settings));
@@ -43,17 +49,25 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     let outcomes = progress.during(|| run(&jobs, at_once, &monitor, &|event| progress.watch(&jobs, event)));
     let time = start.elapsed();
 
-    let report = Report::new(&jobs, &outcomes, time, &errors, settings, arguments.iterations);
+    let report = Report {
+        left_out: left_out.iter().map(|map| map.path.display().to_string()).collect(),
+        ..Report::new(&jobs, &outcomes, time, &errors, settings, arguments.iterations)
+    };
     if !reporting.quiet {
-        put(file_table(&jobs, &outcomes));
-        put(summary(&report.totals, &jobs, &outcomes));
+        put(file_table(&jobs, &outcomes, &report.left_out));
+        put(summary(&report, &jobs, &outcomes));
     }
     if let Some(file) = report_file {
         file.write(&report)?;
     }
+    let is_broken = match &check {
+        // What failed is told; what was interrupted is not to be measured.
+        Some(check) if report.totals.baked == jobs.len() => check.run(reporting.quiet)? == Exit::Failed,
+        _ => false,
+    };
     Ok(match report.totals {
         totals if totals.stopped + totals.not_begun > 0 => Exit::Interrupted,
-        totals if totals.failed > 0 || !errors.is_empty() => Exit::Failed,
+        totals if totals.failed > 0 || !errors.is_empty() || is_broken => Exit::Failed,
         _ => Exit::Success,
     })
 }
@@ -91,16 +105,20 @@ struct Chosen {
 }
 
 impl Chosen {
-    fn new(each: &PerFile, map: &Found, out: &Path) -> texbake::Result<Self> {
+    /// `None` if the file gets no map.
+    fn new(each: &PerFile, map: &Found, out: &Path) -> texbake::Result<Option<Self>> {
         let settings = &each.settings;
-        let maps = each.maps.as_deref().unwrap_or(&[MapKind::Normal]);
+        let maps = MapChoice::kinds(each.maps.as_deref().unwrap_or(&[MapChoice::Map(MapKind::Normal)]))?;
+        if maps.is_empty() {
+            return Ok(None);
+        }
         let (name, format) = (each.name.clone().unwrap_or_default(), each.format.as_deref().unwrap_or("png"));
-        let outputs = name.outputs(map, maps, out, format)?;
+        let outputs = name.outputs(map, &maps, out, format)?;
         let place = settings.device.place()?;
         let normal = outputs.normal.as_ref().map(|path| settings.normal.format(path)).transpose()?;
         let parallax = outputs.parallax.as_ref().map(|path| parallax(each.parallax(), path)).transpose()?;
         let options = settings.slope.bake(normal, parallax)?;
-        Ok(Self { outputs, place, options, read: settings.input.read() })
+        Ok(Some(Self { outputs, place, options, read: settings.input.read() }))
     }
 }
 
@@ -117,17 +135,26 @@ fn parallax(codes: CodeChoice, output: &Path) -> texbake::Result<ParallaxFormat>
     })
 }
 
-/// One job for each file, with its own settings; files that run at the same place share a baker.
-fn jobs(arguments: &BakeArguments, config: Option<&Config>, found: &[Found]) -> Result<Vec<Job>, Failure> {
+/// One job for each file, with its own settings, and the files that get no map; files that run at the same place share
+/// a baker.
+fn jobs<'a>(
+    arguments: &BakeArguments,
+    config: Option<&Config>,
+    found: &'a [Found],
+) -> Result<(Vec<Job>, Vec<&'a Found>), Failure> {
     let mut bakers = HashMap::new();
-    let mut jobs = Vec::new();
+    let (mut jobs, mut left_out) = (Vec::new(), Vec::new());
     for map in found {
         let below = config.map_or_else(PerFile::default, |config| config.settings(&relative(map)));
         let choose = |settings| Chosen::new(settings, map, &arguments.out);
-        let Chosen { outputs, place, options, read } = choose(&arguments.each.clone().or(&below)).map_err(|error| {
+        let chosen = choose(&arguments.each.clone().or(&below)).map_err(|error| {
             // Where the command line alone would do, the mistake is in the file.
             blame(error, config.filter(|_| choose(&arguments.each).is_ok()))
         })?;
+        let Some(Chosen { outputs, place, options, read }) = chosen else {
+            left_out.push(map);
+            continue;
+        };
         let baker = match bakers.get(&place) {
             Some(baker) => Arc::clone(baker),
             None => {
@@ -143,11 +170,11 @@ fn jobs(arguments: &BakeArguments, config: Option<&Config>, found: &[Found]) -> 
         let reason = "--parallax-encoding and --parallax-bits are for parallax maps: ask for them with --maps";
         return Err(Failure::Usage(reason.into()));
     }
-    Ok(jobs)
+    Ok((jobs, left_out))
 }
 
 /// The path below the folder that was searched, which globs match.
-fn relative(map: &Found) -> PathBuf {
+pub fn relative(map: &Found) -> PathBuf {
     map.folder.join(map.path.file_name().unwrap_or_default())
 }
 

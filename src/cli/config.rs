@@ -8,6 +8,7 @@ use globset::{GlobBuilder, GlobMatcher};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use texbake::plan::{Prediction, predictions};
 use texbake::{Error, Result};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -17,6 +18,8 @@ use toml::de::{DeTable, DeValue};
 pub struct Config {
     pub path: PathBuf,
     pub suffixes: Option<Vec<String>>,
+    /// What a plan predicts; only a check looks at it.
+    pub predictions: Vec<Prediction>,
     defaults: PerFile,
     overrides: Vec<Override>,
 }
@@ -78,8 +81,8 @@ impl Config {
             let start = error.span().map_or(0, |span| span.start);
             source.error(start, error.message(), "correct it")
         })?;
-        let mut config =
-            Self { path: path.into(), suffixes: None, defaults: PerFile::default(), overrides: Vec::new() };
+        let (defaults, overrides) = (PerFile::default(), Vec::new());
+        let mut config = Self { path: path.into(), suffixes: None, predictions: Vec::new(), defaults, overrides };
         for (key, value) in document.get_ref() {
             match (key.get_ref().as_ref(), value.get_ref()) {
                 ("suffix", DeValue::Array(values)) => {
@@ -92,6 +95,7 @@ impl Config {
                     config.overrides =
                         tables.iter().map(|table| source.parse_override(table)).collect::<Result<_>>()?;
                 }
+                ("plan", _) => config.predictions = predictions(path, text)?,
                 ("defaults", _) => {
                     return Err(source.error(key.span().start, "defaults is no table", "write [defaults]"));
                 }
@@ -250,11 +254,15 @@ mod tests {
 
     #[test]
     fn maps_are_text_or_a_list() {
-        use texbake::batch::MapKind::{Normal, Parallax};
+        use crate::cli::values::MapChoice::{Map, None};
+        use texbake::batch::MapKind;
+        let (normal, parallax) = (Map(MapKind::Normal), Map(MapKind::Parallax));
         let config = "[defaults]\nmaps = 'parallax,normal'\n[[override]]\nglob = 'a'\nmaps = ['normal', 'parallax']\n\
-                      [[override]]\nglob = 'b'\nmaps = ['parallax']\n";
+                      [[override]]\nglob = 'b'\nmaps = ['parallax']\n[[override]]\nglob = 'd'\nmaps = 'none'\n";
         let config = parse(config).unwrap();
-        for (name, maps) in [("a", vec![Normal, Parallax]), ("b", vec![Parallax]), ("c", vec![Parallax, Normal])] {
+        let expected =
+            [("a", vec![normal, parallax]), ("b", vec![parallax]), ("c", vec![parallax, normal]), ("d", vec![None])];
+        for (name, maps) in expected {
             assert_eq!(config.settings(Path::new(name)).maps, Some(maps), "{name}");
         }
     }

@@ -4,6 +4,7 @@ mod args;
 mod bake;
 mod blend;
 mod check;
+mod check_plan;
 pub(crate) mod config;
 mod devices;
 mod diff;
@@ -11,9 +12,12 @@ mod exit;
 mod measure;
 mod normal;
 mod parallax;
+mod plan;
+mod preview;
 mod print;
 mod progress;
 mod settings;
+mod shaders;
 mod single;
 mod tangents;
 mod values;
@@ -34,13 +38,16 @@ pub fn run() -> ExitCode {
         Command::Normal(arguments) => normal::normal(arguments),
         Command::Parallax(arguments) => parallax::parallax(arguments),
         Command::Bake(arguments) => bake::bake(arguments),
+        Command::Plan(arguments) => plan::plan(arguments),
         Command::Blend(arguments) => blend::blend(arguments),
         Command::Tangents(arguments) => tangents::tangents(arguments),
         Command::Check(arguments) => check::check(arguments),
         Command::Diff(arguments) => diff::diff(arguments),
         Command::Devices(arguments) => devices::devices(arguments),
+        Command::Preview(arguments) => preview::preview(arguments),
         Command::Verify(arguments) => verify::verify(arguments),
         Command::Measure(arguments) => measure::run(arguments),
+        Command::Shaders(arguments) => shaders::shaders(arguments),
     };
     let exit = done.unwrap_or_else(|failure| {
         print::say(format_args!("error: {failure}"));

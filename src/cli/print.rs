@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 use std::thread::JoinHandle;
 use texbake::batch::{
-    BlendJob, BlendOutcome, FileResult, Job, ModelTangents, Outcome, ParallaxNumbers, TangentJob, Totals,
+    BlendJob, BlendOutcome, FileResult, Job, ModelTangents, Outcome, ParallaxNumbers, Report, TangentJob,
     describe_codes,
 };
 use texbake::verify::{Agreement, Comparison, Errors};
@@ -72,7 +72,7 @@ pub fn file_line(job: &Job, outcome: &Outcome) -> String {
             "baked {} -> {}, {}, {}, {}",
             job.input.display(),
             outputs(job),
-            baked.size,
+            size(job, baked),
             baked.height_type,
             milliseconds(outcome)
         ),
@@ -93,7 +93,7 @@ pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
     Some(format!(
         "{}: {}, {} to {}{}, scale {}{}, {}; {}",
         outputs(job),
-        baked.size,
+        size(job, baked),
         baked.height_type,
         formats.join(" and "),
         job.normals.iter().map(|normals| format!(" with {}", normals.path.display())).collect::<String>(),
@@ -212,6 +212,14 @@ fn describe_normals(format: NormalFormat) -> String {
     format!("{encoding} {depth} {channels} {convention}")
 }
 
+/// The size of the maps: `256 x 256`, or `256 x 256 (shrunk by 4)`.
+fn size(job: &Job, baked: &Baked) -> String {
+    match job.read.shrink.get() {
+        1 => baked.size.to_string(),
+        by => format!("{} (shrunk by {by})", baked.size),
+    }
+}
+
 /// The files of a job's maps.
 fn outputs(job: &Job) -> String {
     job.outputs.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
@@ -231,10 +239,10 @@ fn how_it_ran<T>(ran: &Ran, size: Size, baker: &Baker, outcome: &Outcome<T>) -> 
 }
 
 /// The files of a folder; of many only those that were not baked, and the slowest.
-pub fn file_table(jobs: &[Job], outcomes: &[Outcome]) -> String {
+pub fn file_table(jobs: &[Job], outcomes: &[Outcome], left_out: &[String]) -> String {
     let files = || jobs.iter().zip(outcomes);
-    if jobs.len() <= TABLE_ROWS {
-        return rows_of(files());
+    if jobs.len() + left_out.len() <= TABLE_ROWS {
+        return rows_of(files(), left_out);
     }
     let (mut baked, unbaked): (Vec<_>, Vec<_>) = files().partition(|(_, outcome)| outcome.result.is_ok());
     baked.sort_by_key(|(_, outcome)| Reverse(outcome.time));
@@ -243,14 +251,14 @@ pub fn file_table(jobs: &[Job], outcomes: &[Outcome]) -> String {
         (0, slowest) => format!("the {slowest} slowest"),
         (unbaked, slowest) => format!("{unbaked} not baked, and the {slowest} slowest"),
     };
-    format!("of {} files {what}:\n{}", jobs.len(), rows_of(unbaked.into_iter().chain(baked)))
+    format!("of {} files {what}:\n{}", jobs.len(), rows_of(unbaked.into_iter().chain(baked), &[]))
 }
 
-fn rows_of<'a>(files: impl Iterator<Item = (&'a Job, &'a Outcome)>) -> String {
+fn rows_of<'a>(files: impl Iterator<Item = (&'a Job, &'a Outcome)>, left_out: &[String]) -> String {
     let mut table = plain_table(&["file", "size", "depth", "maps", "ms", "result"], &[4]);
     for (job, outcome) in files {
         let (size, depth) = match &outcome.result {
-            Ok(baked) => (baked.size.to_string(), baked.height_type.to_string()),
+            Ok(baked) => (size(job, baked), baked.height_type.to_string()),
             Err(_) => Default::default(),
         };
         let time = outcome.time.map_or(String::new(), |time| format!("{:.1}", time.as_secs_f64() * 1e3));
@@ -264,13 +272,22 @@ fn rows_of<'a>(files: impl Iterator<Item = (&'a Job, &'a Outcome)>) -> String {
         let maps = maps.into_iter().flatten().collect::<Vec<_>>().join(",");
         table.add_row([job.input.display().to_string(), size, depth, maps, time, result]);
     }
+    for file in left_out {
+        table.add_row([file, "", "", "none", "", "left out"]);
+    }
     table.trim_fmt()
 }
 
 /// One line about a run.
-pub fn summary(totals: &Totals, jobs: &[Job], outcomes: &[Outcome]) -> String {
+pub fn summary(report: &Report, jobs: &[Job], outcomes: &[Outcome]) -> String {
+    let totals = &report.totals;
     let mut counts = vec![format!("{} of {} files baked", totals.baked, totals.files)];
-    for (count, what) in [(totals.failed, "failed"), (totals.stopped, "stopped"), (totals.not_begun, "not begun")] {
+    for (count, what) in [
+        (totals.failed, "failed"),
+        (totals.stopped, "stopped"),
+        (totals.not_begun, "not begun"),
+        (report.left_out.len(), "left out"),
+    ] {
         if count > 0 {
             counts.push(format!("{count} {what}"));
         }

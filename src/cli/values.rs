@@ -4,6 +4,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::fmt;
 use std::num::NonZeroU32;
 use std::str::FromStr;
+use texbake::batch::MapKind;
 use texbake::{Error, Rational};
 
 /// Reads a value; what it must be becomes the message.
@@ -80,10 +81,56 @@ impl fmt::Display for WeightPair {
     }
 }
 
+/// One of what `--maps` lists.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MapChoice {
+    Map(MapKind),
+    /// The file gets no map.
+    None,
+}
+
+impl MapChoice {
+    pub const NAMES: &'static [&'static str] = &["normal", "parallax", "none"];
+
+    /// The maps of a list; none of "none".
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for "none" beside a map.
+    pub fn kinds(choices: &[Self]) -> Result<Vec<MapKind>, Error> {
+        let kinds: Vec<MapKind> = choices.iter().filter_map(Self::kind).collect();
+        match choices.len() - kinds.len() {
+            0 => Ok(kinds),
+            _ if kinds.is_empty() => Ok(kinds),
+            _ => Err(wrong("maps", "none and others", "none alone, or normal, parallax or both")),
+        }
+    }
+
+    fn kind(&self) -> Option<MapKind> {
+        match self {
+            Self::Map(kind) => Some(*kind),
+            Self::None => None,
+        }
+    }
+}
+
+impl FromStr for MapChoice {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        if text == "none" { Ok(Self::None) } else { text.parse().map(Self::Map) }
+    }
+}
+
 /// Steps of a shader through a parallax map.
 pub fn iterations(text: &str) -> Result<NonZeroU32, String> {
     let steps = text.parse().ok().filter(|steps: &NonZeroU32| steps.get() <= 1000);
     steps.ok_or_else(|| "it must be a whole number from 1 to 1000".into())
+}
+
+/// A factor by which height maps are reduced.
+pub fn shrink(text: &str) -> Result<NonZeroU32, String> {
+    let factor = text.parse().ok().filter(|factor: &NonZeroU32| factor.get() <= 64);
+    factor.ok_or_else(|| "it must be a whole number from 1 to 64".into())
 }
 
 /// An angle up to a right one.

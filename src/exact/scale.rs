@@ -4,6 +4,7 @@ use super::rational::{Rational, gcd};
 use crate::error::{Error, Result};
 use crate::map::Size;
 use std::fmt;
+use std::num::NonZeroU32;
 
 /// How high h = 1 is.
 ///
@@ -66,6 +67,28 @@ impl Scale {
     /// h = 1 is `depth` high where the map is `width` by `height`, all in one unit.
     pub fn physical(width: Rational, height: Rational, depth: Rational) -> Self {
         Self::Physical { size: [width, height], depth }
+    }
+
+    /// The same heights over a map that was reduced by a whole factor, whose texels are wider by it.
+    ///
+    /// ```
+    /// use texbake::Scale;
+    ///
+    /// let by_four = 4.try_into()?;
+    /// assert_eq!(Scale::texels(24).shrunk(by_four)?, Scale::texels(6));
+    /// let physical = Scale::physical(2.into(), 2.into(), "0.1".parse()?);
+    /// assert_eq!(physical.shrunk(by_four)?, physical);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a scale with too many digits.
+    pub fn shrunk(self, by: NonZeroU32) -> Result<Self> {
+        let Self::Texels(scale) = self else { return Ok(self) };
+        let below = scale.denominator().checked_mul(by.get().into());
+        let shrunk = below.and_then(|below| Rational::new(scale.numerator(), below).ok());
+        let too_long = || Error::parameter("scale", scale, format!("a number of fewer digits, with shrink {by}"));
+        shrunk.map(Self::Texels).ok_or_else(too_long)
     }
 
     /// The scale of each axis for a map of this size, in texels.

@@ -11,6 +11,7 @@ mod check;
 mod diff;
 mod green;
 mod heatmap;
+pub(crate) mod ramp;
 mod read;
 mod repair;
 mod seams;

@@ -191,6 +191,13 @@ impl HeightRows {
         Ok((rows, warnings))
     }
 
+    /// Goes to the row that shall be read next.
+    pub fn seek(&mut self, row: usize) -> Result<()> {
+        self.samples.seek(row)?;
+        self.next_row = row;
+        Ok(())
+    }
+
     /// Reads the row `row` and picks its heights.
     fn read_row(&mut self, row: usize, mut heights: HeightsMut<'_>) -> Result<()> {
         self.samples.read(self.interleaved.as_mut())?;
@@ -258,13 +265,9 @@ impl RowSource for HeightRows {
     }
 
     fn read_last_row(&mut self, mut row: HeightsMut<'_>) -> Result<()> {
-        let last = self.layout.size.height() - 1;
-        self.samples.seek(last)?;
-        self.next_row = last;
+        self.seek(self.layout.size.height() - 1)?;
         self.read(part_mut(&mut row, 0..self.layout.size.width()))?;
-        self.samples.seek(0)?;
-        self.next_row = 0;
-        Ok(())
+        self.seek(0)
     }
 
     fn last_row_is_near(&self) -> bool {

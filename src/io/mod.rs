@@ -1,8 +1,8 @@
 //! Height maps and normal maps in, normal maps and parallax maps out; models in and out ([`Model`]).
 //!
 //! A file's rows pass three steps, one module each: a decoder gives interleaved samples (`samples`), `channel`
-//! picks the height of each texel or `normal` its components, and `srgb` undoes a wrong colour space of heights where
-//! that was asked for. Decoders hold a row, a strip or a block at a time where the format allows it.
+//! picks the height of each texel or `normal` its components, and `srgb` undoes a wrong colour space of heights and
+//! `shrink` reduces them where that was asked for. Decoders hold a row, a strip or a block at a time where the format allows it.
 //!
 //! Nothing is lost: writers go through `replace`, so that a name stands for the old file or for the complete new one at
 //! any moment, whatever ends the process; after a loss of power too, since bytes are on the disk before they get a name.
@@ -27,6 +27,7 @@ mod raster;
 mod raw;
 pub(crate) mod replace;
 mod samples;
+mod shrink;
 mod sink;
 mod srgb;
 mod temporary;
@@ -47,6 +48,8 @@ use format::{FileFormat, OutputFormat};
 use input::Found;
 use normal::NormalRows;
 use samples::Opened;
+use shrink::Shrunk;
+use std::num::NonZeroU32;
 use std::path::Path;
 
 /// How a file becomes a height map.
@@ -58,6 +61,10 @@ pub struct ReadOptions {
     pub color_space: ColorSpace,
     /// The layout of a file without a header.
     pub raw: Option<RawLayout>,
+    /// By which factor the map is reduced while it is read, from 1 to 64, a divisor of both its sides: each height is the
+    /// mean of a square of the file's. The means of 8- and 16-bit codes are 16-bit codes, rounded half up; those of
+    /// floats are summed in f64, row by row from the left, and rounded once.
+    pub shrink: NonZeroU32,
     /// The most bytes that decoding one file may hold in memory at once, checked from its header and its length.
     pub max_bytes: u64,
 }
@@ -115,7 +122,13 @@ const MAX_BYTES: u64 = 4 << 30;
 
 impl Default for ReadOptions {
     fn default() -> Self {
-        Self { channel: None, color_space: ColorSpace::Linear, raw: None, max_bytes: MAX_BYTES }
+        Self {
+            channel: None,
+            color_space: ColorSpace::Linear,
+            raw: None,
+            shrink: NonZeroU32::MIN,
+            max_bytes: MAX_BYTES,
+        }
     }
 }
 
@@ -137,8 +150,8 @@ impl Default for NormalReadOptions {
 ///
 /// # Errors
 /// [`crate::Error::TooLarge`] if decoding needs more than [`ReadOptions::max_bytes`] at once, before anything is
-/// allocated; [`crate::Error::File`] for what is wrong with the file or with its channels; [`crate::Error::Io`].
-/// Damage further down, channels that differ, [`crate::Error::NotFinite`] heights and a file that changed since are
+/// allocated; [`crate::Error::File`] for what is wrong with the file or with its channels; [`crate::Error::Parameter`]
+/// for a [`ReadOptions::shrink`] that does not fit the map; [`crate::Error::Io`]. Damage further down, channels that differ, [`crate::Error::NotFinite`] heights and a file that changed since are
 /// reported by the row reader.
 pub fn open_heights(path: &Path, options: &ReadOptions) -> Result<HeightFile> {
     let found = Found::at(path)?;
@@ -148,7 +161,11 @@ pub fn open_heights(path: &Path, options: &ReadOptions) -> Result<HeightFile> {
     };
     let opened = found.watch(opened)?;
     let (rows, warnings) = HeightRows::new(path, opened, options)?;
-    Ok(HeightFile { rows: Box::new(rows), warnings })
+    let rows: Box<dyn RowSource> = match options.shrink {
+        NonZeroU32::MIN => Box::new(rows),
+        by => Box::new(Shrunk::new(rows, by)?),
+    };
+    Ok(HeightFile { rows, warnings })
 }
 
 /// Opens a normal map file: PNG, TIFF, EXR, TGA, BMP, JPEG or WebP, found out and read as [`open_heights`] does.

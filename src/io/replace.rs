@@ -205,11 +205,12 @@ fn system_reason(error: &io::Error) -> String {
     let reason = error.to_string();
     reason.split(" at path ").next().unwrap_or(&reason).into()
 }
+
 /// Writes a whole file, which appears under its name when it is complete; its folders are made.
 ///
 /// # Errors
 /// [`Error::File`] if there is something else than a file under its name; [`Error::Io`].
-#[cfg(feature = "gpu")]
+#[cfg(any(feature = "cli", feature = "gpu"))]
 pub(crate) fn replace_file(path: &Path, content: &[u8]) -> Result<()> {
     std::fs::create_dir_all(path.parent().unwrap_or(Path::new(""))).map_err(Error::io(path))?;
     let file = Replacement::create(path)?;

@@ -4,7 +4,7 @@ use crate::map::{
     Channels, CodesRef, Convention, Depth, Edge, Edges, Encoding, HeightMap, Heights, NormalMap, ParallaxMap, Size,
     TexelFormat,
 };
-use crate::shading::{decode_biased_8, decode_biased_16, decode_snorm, decode_unorm, green_turned, rebuild_z};
+use crate::shading::{decode_biased_8_bit, decode_biased_16_bit, decode_snorm, decode_unorm, green_turned, rebuild_z};
 
 /// Texels of `N` components, decoded.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +18,11 @@ impl<const N: usize> Texture<N> {
     /// Width and height in texels.
     pub fn size(&self) -> Size {
         self.size
+    }
+
+    /// What is beyond the border.
+    pub fn edges(&self) -> Edges {
+        self.edges
     }
 
     /// The texels, row by row from the top.
@@ -121,8 +126,8 @@ fn decoded(format: TexelFormat, samples: [f32; 3]) -> [f32; 3] {
     match (format.encoding, format.depth) {
         (Encoding::Unorm, _) => decode_unorm(samples),
         (Encoding::Snorm, _) => decode_snorm(samples),
-        (Encoding::Biased, Depth::Bits8) => decode_biased_8(samples),
-        (Encoding::Biased, _) => decode_biased_16(samples),
+        (Encoding::Biased, Depth::Bits8) => decode_biased_8_bit(samples),
+        (Encoding::Biased, _) => decode_biased_16_bit(samples),
         (Encoding::Float, _) => samples,
     }
 }

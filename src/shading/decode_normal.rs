@@ -15,16 +15,16 @@ pub fn decode_snorm(s: [f32; 3]) -> [f32; 3] {
 /// Schüler's sign expansion of 8 bits, v = 255/127 s - 128/127 and never below -1: the code 128 is exactly 0.
 ///
 /// ```
-/// use texbake::shading::decode_biased_8;
+/// use texbake::shading::decode_biased_8_bit;
 ///
-/// assert_eq!(decode_biased_8([128.0 / 255.0, 1.0 / 255.0, 1.0]), [0.0, -1.0, 1.0]);
+/// assert_eq!(decode_biased_8_bit([128.0 / 255.0, 1.0 / 255.0, 1.0]), [0.0, -1.0, 1.0]);
 /// ```
-pub fn decode_biased_8(s: [f32; 3]) -> [f32; 3] {
+pub fn decode_biased_8_bit(s: [f32; 3]) -> [f32; 3] {
     s.map(|s| ((255.0 * s - 128.0) / 127.0).max(-1.0))
 }
 
 /// The same of 16 bits: v = 65535/32767 s - 32768/32767, and the code 32768 is exactly 0.
-pub fn decode_biased_16(s: [f32; 3]) -> [f32; 3] {
+pub fn decode_biased_16_bit(s: [f32; 3]) -> [f32; 3] {
     s.map(|s| ((65_535.0 * s - 32_768.0) / 32_767.0).max(-1.0))
 }
 

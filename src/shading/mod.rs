@@ -5,14 +5,20 @@
 //!
 //! | | |
 //! | --- | --- |
-//! | [`decode_unorm`], [`decode_snorm`], [`decode_biased_8`], [`rebuild_z`], [`green_turned`] | from samples to a normal |
+//! | [`decode_unorm`], [`decode_snorm`], [`decode_biased_8_bit`], [`decode_biased_16_bit`] | from samples to a normal |
+//! | [`rebuild_z`], [`green_turned`] | two channels, green up and down |
 //! | [`vertex_frame`], [`pixel_frame`], [`to_tangent`], [`to_object`] | tangent space with precomputed tangents |
 //! | [`cotangent_frame`], [`without_perspective`], [`gradients`], [`perturbed_normal`] | and without |
 //! | [`welsh_offset`], [`limited_offset`], [`plane_offset`], [`stepped_offset`], [`relief_offset`] | parallax |
 //! | [`diffuse`], [`two_lights`], [`blinn_phong`] | light |
+//!
+//! [`LIBRARY`] has the texts, and `texbake shaders` writes them for engines that do not read WGSL.
 
 mod cotangent_frame;
 mod decode_normal;
+#[cfg(feature = "cli")]
+mod export;
+mod library;
 mod lighting;
 mod plane_offset;
 mod relief_offset;
@@ -21,7 +27,12 @@ mod tangent_frame;
 mod welsh_offset;
 
 pub use cotangent_frame::{cotangent_frame, gradients, perturbed_normal, without_perspective};
-pub use decode_normal::{decode_biased_8, decode_biased_16, decode_snorm, decode_unorm, green_turned, rebuild_z};
+pub use decode_normal::{
+    decode_biased_8_bit, decode_biased_16_bit, decode_snorm, decode_unorm, green_turned, rebuild_z,
+};
+#[cfg(feature = "cli")]
+pub use export::{ShaderLanguage, export};
+pub use library::{LIBRARY, ShaderFile};
 pub use lighting::{blinn_phong, diffuse, two_lights};
 pub use plane_offset::plane_offset;
 pub use relief_offset::relief_offset;

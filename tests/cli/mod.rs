@@ -10,6 +10,7 @@ mod maps;
 mod memory;
 mod normal;
 mod parallax;
+mod plan_settings;
 mod report;
 mod settings;
 pub mod support;

@@ -25,7 +25,9 @@ fn a_folder_is_reported_file_by_file() {
     let mut report = folder.json("report.json");
     let mut files = take(&mut report, "files");
     let mut totals = take(&mut report, "totals");
-    assert_eq!(report, json!({ "version": env!("CARGO_PKG_VERSION"), "settings": "tex/texbake.toml", "errors": [] }));
+    let expected =
+        json!({ "version": env!("CARGO_PKG_VERSION"), "settings": "tex/texbake.toml", "errors": [], "left_out": [] });
+    assert_eq!(report, expected);
 
     let bytes = |name: &str| std::fs::metadata(folder.path(name)).unwrap().len();
     let (seconds, rate) = (take(&mut totals, "seconds"), take(&mut totals, "megatexels_per_second"));
@@ -47,7 +49,7 @@ fn a_folder_is_reported_file_by_file() {
     let mut options = json!({
         "scale": "1", "filter": "central", "edge": "wrap,clamp", "maps": "normal", "encoding": "unorm", "bits": "8",
         "channels": "xyz", "convention": "gl", "parallax_encoding": null, "parallax_bits": null, "iterations": null,
-        "precision": "exact", "channel": null, "color_space": "linear", "raw": null,
+        "precision": "exact", "channel": null, "color_space": "linear", "raw": null, "shrink": 1,
         "max_bytes": 4_294_967_296u64,
     });
     assert_eq!(

@@ -18,5 +18,6 @@ mod raster;
 mod raw;
 mod replace;
 mod samples;
+mod shrink;
 mod support;
 mod tiff;

@@ -90,6 +90,12 @@ impl Untested {
         OwnPipeline::new(&self.device, wgsl, entry_point, constants)
     }
 
+    /// Whether a sampler of it filters textures of f32.
+    #[cfg(feature = "cli")]
+    pub fn filters_floats(&self) -> bool {
+        self.device.device.features().contains(wgpu::Features::FLOAT32_FILTERABLE)
+    }
+
     /// A device that somebody else has opened.
     pub fn hosted(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
         let name = adapters::describe(&device.adapter_info());
@@ -200,6 +206,12 @@ impl Gpu {
         }
         let found = if reasons.is_empty() { "none found".into() } else { reasons.join("; ") };
         Err(format!("no real GPU: {found}"))
+    }
+
+    /// The device, for other kernels than its own.
+    #[cfg(feature = "cli")]
+    pub fn untested(&self) -> &Untested {
+        &self.untested
     }
 
     fn tested(untested: Untested) -> Result<Self> {

@@ -9,6 +9,7 @@ use crate::exact::Scale;
 use crate::map::{Depth, Encoding, HeightType, NormalFormat, ParallaxFormat, Size};
 use crate::ops::Precision;
 use crate::ops::bake::{BakeOptions, BakePlan};
+use crate::shading::LIBRARY;
 use naga::{AddressSpace, ScalarKind, StorageAccess, TypeInner};
 use std::collections::BTreeSet;
 use std::mem::offset_of;
@@ -211,6 +212,9 @@ fn every_file_under_kernels_is_registered() {
             let text = std::fs::read_to_string(&path).unwrap();
             if path.parent().is_some_and(|folder| folder.ends_with("shading")) {
                 check_pure(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+                let is_listed =
+                    LIBRARY.iter().any(|file| path.ends_with(format!("{}.wgsl", file.name)) && file.wgsl == text);
+                assert!(is_listed, "{} is not in the library's list", path.display());
                 continue;
             }
             assert!(texts.iter().any(|registered| registered.contains(&text)), "{} is in no kernel", path.display());

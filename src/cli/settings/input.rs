@@ -1,7 +1,8 @@
 //! How inputs are read.
 
-use crate::cli::values::{ByteSize, choice, value};
+use crate::cli::values::{ByteSize, choice, shrink, value};
 use clap::Args;
+use std::num::NonZeroU32;
 use texbake::io::{Channel, ColorSpace, NormalReadOptions, RawLayout, ReadOptions};
 
 /// What was set of a height map.
@@ -19,6 +20,11 @@ pub struct HeightInput {
     #[arg(long, value_name = "WxH:TYPE", value_parser = value::<RawLayout>, help_heading = HEADING)]
     pub raw: Option<RawLayout>,
 
+    /// Reduce the map by a whole factor first, a divisor of both its sides: the mean of N x N heights, as a 16-bit code
+    /// or a float. --scale stays in texels of the file [default: 1]
+    #[arg(long, value_name = "N", value_parser = shrink, help_heading = HEADING)]
+    pub shrink: Option<NonZeroU32>,
+
     /// Most memory that decoding one file may take: 512M, 4G [default: 4G]
     #[arg(long, value_name = "BYTES", value_parser = value::<ByteSize>, help_heading = HEADING)]
     pub max_bytes: Option<ByteSize>,
@@ -33,6 +39,7 @@ impl HeightInput {
             channel: self.channel.or(weaker.channel),
             color_space: self.color_space.or(weaker.color_space),
             raw: self.raw.or(weaker.raw),
+            shrink: self.shrink.or(weaker.shrink),
             max_bytes: self.max_bytes.or(weaker.max_bytes),
         }
     }
@@ -43,6 +50,7 @@ impl HeightInput {
             channel: self.channel.clone(),
             color_space: self.color_space.unwrap_or_default(),
             raw: self.raw,
+            shrink: self.shrink.unwrap_or(NonZeroU32::MIN),
             max_bytes: max_bytes(self.max_bytes),
         }
     }

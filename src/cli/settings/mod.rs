@@ -7,7 +7,7 @@ mod formats;
 mod input;
 mod slope;
 
-pub use device::{Device, Place, open_baker};
+pub use device::{Backend, Device, Place, open_baker};
 pub use formats::{CodeChoice, NormalOutput};
 pub use input::{HeightInput, max_bytes};
 pub use slope::Slope;
@@ -67,7 +67,6 @@ impl Slope {
 
 #[cfg(test)]
 mod tests {
-    use super::device::Backend;
     use super::*;
     use crate::cli::values::Extent;
     use texbake::{Depth, Encoding, Scale};

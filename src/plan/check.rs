@@ -1,0 +1,235 @@
+//! Whether what was baked is what was predicted.
+
+use super::decision::{degrees, pixels, short};
+use super::method::method;
+use super::parallax::{material, views};
+use super::prediction::{MapPrediction, NormalPrediction, Prediction};
+use super::scene::Facts;
+use super::visible::VisibleNormals;
+use crate::error::{Error, Result};
+use crate::io::{NormalReadOptions, ReadOptions};
+use crate::map::{
+    Channels, CodeMap, Codes, CodesRef, Depth, Encoding, HeightMap, Heights, Maps, NormalMap, ParallaxFormat,
+    ParallaxMap, Size,
+};
+use crate::material::{ParallaxMethod, Texture};
+use std::path::{Path, PathBuf};
+
+/// What was found of one height map's maps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Checked {
+    /// What was measured beside what was predicted, in words.
+    pub measured: Vec<String>,
+    /// The predictions that do not hold, in words with the names of the files.
+    pub broken: Vec<String>,
+}
+
+/// What a number may differ by from the predicted one: sine and cosine are not the same to the last bit everywhere.
+const MARGIN: f64 = 1e-3;
+
+impl Prediction {
+    /// Measures the `maps` of the height map `input` again, against what the scene says of it.
+    ///
+    /// # Errors
+    /// What reading `input` reports. A map that cannot be read is a broken prediction.
+    pub fn check(&self, input: &Path, maps: &Maps<PathBuf>) -> Result<Checked> {
+        let facts = self.material.facts()?;
+        let (heights, _) = HeightMap::read_with(input, &facts.read)?;
+        let mut checking =
+            Checking { facts, heights: &heights, prediction: self, measured: Vec::new(), broken: Vec::new() };
+        let normals = checking.normals(maps.normal.as_deref())?;
+        checking.parallax(maps.parallax.as_deref(), normals)?;
+        let Checking { measured, broken, .. } = checking;
+        Ok(Checked { measured, broken })
+    }
+
+    /// The most that an error may be: the predicted one, and of a fast bake, whose bytes may be others elsewhere, what
+    /// the scene allows.
+    fn most(&self, predicted: f64, tolerance: f64) -> f64 {
+        let most = if self.precision == "fast" { tolerance } else { predicted };
+        most * (1.0 + MARGIN)
+    }
+}
+
+struct Checking<'a> {
+    facts: Facts,
+    heights: &'a HeightMap,
+    prediction: &'a Prediction,
+    measured: Vec<String>,
+    broken: Vec<String>,
+}
+
+impl Checking<'_> {
+    /// Checks the normal map, or that there is none, and returns what was read.
+    fn normals(&mut self, path: Option<&Path>) -> Result<Option<NormalMap>> {
+        let NormalPrediction { map, degrees: predicted, tolerance } = &self.prediction.normal;
+        let Some((path, map)) = self.is_there("normal", path, map.as_ref()) else { return Ok(None) };
+        let format = map.normals(self.facts.convention)?;
+        let read = NormalReadOptions {
+            encoding: Some(format.encoding),
+            channels: Some(format.channels),
+            convention: format.convention,
+            ..NormalReadOptions::default()
+        };
+        let baked = match NormalMap::read_with(path, &read)
+            .and_then(|(baked, _)| Ok((found(path, &baked, format.depth)?, baked)))
+        {
+            Ok((found, baked)) if self.is_as_predicted(path, map, baked.size(), found) => baked,
+            Ok(_) => return Ok(None),
+            Err(error) => {
+                self.broken.push(error.to_string());
+                return Ok(None);
+            }
+        };
+        let by = (self.heights.size().width() / baked.size().width()) as u32;
+        let visible = VisibleNormals::new(self.heights, &self.facts.bake(), by)?;
+        if visible.size() != baked.size() {
+            self.broken.push(format!("{}: no whole factor reduces the height map to {}", path.display(), baked.size()));
+            return Ok(None);
+        }
+        let largest = visible.errors(&Texture::of_normals(&baked, self.facts.edges)).largest;
+        let (most, numbers) = (self.prediction.most(*predicted, *tolerance), [largest, *predicted].map(degrees));
+        self.compare(path, "normals are off by", largest, most, numbers);
+        Ok(Some(baked))
+    }
+
+    /// Checks the parallax map, or that there is none.
+    fn parallax(&mut self, path: Option<&Path>, normals: Option<NormalMap>) -> Result<()> {
+        let predicted = &self.prediction.parallax;
+        let Some((path, map)) = self.is_there("parallax", path, predicted.map.as_ref()) else { return Ok(()) };
+        let format = map.parallax()?;
+        let baked = match read_parallax(path, format) {
+            Ok((baked, depth)) if self.is_as_predicted(path, map, baked.size(), (depth, None)) => baked,
+            Ok(_) => return Ok(()),
+            Err(error) => {
+                self.broken.push(error.to_string());
+                return Ok(());
+            }
+        };
+        let flat = flat_normals(baked.size())?;
+        let options = self.facts.bake();
+        let material = material(self.heights, normals.as_ref().unwrap_or(&flat), &baked, &options)?;
+        let (views, truth) = views(&material, self.prediction.seen.angle);
+        let method: ParallaxMethod = method(&predicted.method)?;
+        let texels = views.errors(&material, method, &truth).largest;
+        let largest = texels * self.prediction.seen.pixels_per_texel;
+        let most = self.prediction.most(predicted.pixels, predicted.tolerance);
+        let numbers = [largest, predicted.pixels].map(pixels);
+        self.compare(path, &format!("offsets of {} are off by", predicted.method), largest, most, numbers);
+        Ok(())
+    }
+
+    fn compare(&mut self, path: &Path, what: &str, largest: f64, most: f64, [measured, predicted]: [String; 2]) {
+        let line = format!("{}: {what} {measured} at most, {predicted} predicted", path.display());
+        if largest <= most { self.measured.push(line) } else { self.broken.push(line) }
+    }
+
+    /// The map's path and prediction, if there is a map that was predicted.
+    fn is_there<'p>(
+        &mut self,
+        kind: &str,
+        path: Option<&'p Path>,
+        map: Option<&'p MapPrediction>,
+    ) -> Option<(&'p Path, &'p MapPrediction)> {
+        match (path, map) {
+            (Some(path), Some(map)) => return Some((path, map)),
+            (Some(path), None) => {
+                self.broken.push(format!("{}: no {kind} map was planned, and one is baked", path.display()));
+            }
+            (None, Some(_)) => {
+                self.broken.push(format!("{}: a {kind} map was planned, and none is baked", self.prediction.file));
+            }
+            (None, None) => {}
+        }
+        None
+    }
+
+    /// Whether extension, size, depth and components are those that were predicted, and with them the bytes.
+    fn is_as_predicted(
+        &mut self,
+        path: &Path,
+        map: &MapPrediction,
+        size: Size,
+        (depth, channels): (Depth, Option<Channels>),
+    ) -> bool {
+        let extension = path.extension().unwrap_or_default().to_string_lossy().into_owned();
+        let count = channels.map_or(1, Channels::count);
+        let bytes = size.texels() * count * depth.bytes();
+        let is_same = extension == map.format
+            && [size.width(), size.height()] == map.texels
+            && depth.to_string() == map.bits
+            && channels.map(|channels| channels.to_string()) == map.channels
+            && bytes == map.bytes;
+        let components = |channels: Option<String>| channels.map(|it| format!(" {it}")).unwrap_or_default();
+        let line = format!(
+            "{}: {extension} of {size}, {depth} bits{}, {} bytes; predicted {} of {} x {}, {} bits{}, {} bytes",
+            path.display(),
+            components(channels.map(|it| it.to_string())),
+            short(bytes as f64),
+            map.format,
+            map.texels[0],
+            map.texels[1],
+            map.bits,
+            components(map.channels.clone()),
+            short(map.bytes as f64),
+        );
+        if is_same {
+            self.measured.push(line)
+        } else {
+            self.broken.push(line)
+        }
+        is_same
+    }
+}
+
+/// The depth and components of a normal map file: a PNG of x and y has three channels, the third of zeros.
+fn found(path: &Path, read: &NormalMap, predicted: Depth) -> Result<(Depth, Option<Channels>)> {
+    let (depth, mut channels) = (stored_depth(read.codes(), predicted), read.format().channels);
+    if path.extension().is_some_and(|extension| extension == "png") && channels == Channels::Xy {
+        let whole = NormalReadOptions { encoding: Some(read.format().encoding), ..NormalReadOptions::default() };
+        let (whole, _) = NormalMap::read_with(path, &whole)?;
+        let is_zero = |i: usize| match whole.codes() {
+            CodesRef::U8(codes) => codes[i] == 0,
+            CodesRef::U16(codes) => codes[i] == 0,
+            _ => false,
+        };
+        if !(0..whole.size().texels()).all(|texel| is_zero(3 * texel + 2)) {
+            channels = Channels::Xyz;
+        }
+    }
+    Ok((depth, Some(channels)))
+}
+
+/// How codes are stored: half floats are read as floats.
+fn stored_depth(codes: CodesRef<'_>, predicted: Depth) -> Depth {
+    let is_half = |code: &f32| half::f16::from_f32(*code).to_f32() == *code;
+    match codes {
+        CodesRef::F32(codes) if predicted == Depth::Float16 && codes.iter().all(is_half) => predicted,
+        codes => codes.depth(),
+    }
+}
+
+/// Reads a parallax map of this format, and tells how its codes are stored.
+fn read_parallax(path: &Path, format: ParallaxFormat) -> Result<(ParallaxMap, Depth)> {
+    let (map, _) = HeightMap::read_with(path, &ReadOptions::default())?;
+    // A signed file is read as v + 2^(b-1).
+    let is_signed = format.encoding == Encoding::Snorm;
+    let codes = match map.heights() {
+        Heights::U8(codes) => Codes::U8(codes.iter().map(|code| if is_signed { code ^ 0x80 } else { *code }).collect()),
+        Heights::U16(codes) => {
+            Codes::U16(codes.iter().map(|code| if is_signed { code ^ 0x8000 } else { *code }).collect())
+        }
+        Heights::F32(codes) => Codes::F32(codes.to_vec()),
+    };
+    let depth = stored_depth(codes.as_ref(), format.depth);
+    let stored = ParallaxFormat { depth: codes.as_ref().depth(), ..format };
+    let map = CodeMap::new(map.size(), stored, codes).map_err(|error| {
+        Error::file(path, format!("it holds no {} {} codes: {error}", format.encoding, format.depth), "bake it again")
+    })?;
+    Ok((map, depth))
+}
+
+/// A normal map that shows nothing, for methods that do not look at one.
+fn flat_normals(size: Size) -> Result<NormalMap> {
+    NormalMap::new(size, crate::map::NormalFormat::default(), Codes::U8([128, 128, 255].repeat(size.texels())))
+}

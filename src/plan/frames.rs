@@ -1,0 +1,144 @@
+//! Tangents at the vertices, or a cotangent frame at each pixel.
+
+use super::decision::{Decision, Rejected, degrees, short};
+use super::subject::Subject;
+use crate::baker::Baker;
+use crate::error::Result;
+use crate::inspect::angle;
+use crate::io::Model;
+use crate::map::{Convention, NormalMap};
+use crate::material::Texture;
+use crate::measure::{Errors, median_time};
+use crate::mesh::Mesh;
+use crate::ops::tangents::{TangentOptions, Tangents};
+use crate::shading::{cotangent_frame, perturbed_normal, pixel_frame};
+use crate::vector::{normalized, sub};
+use std::hint::black_box;
+use std::path::Path;
+
+/// What 4 floats take at each vertex.
+const BYTES_PER_VERTEX: u32 = 16;
+
+/// Names in predictions.
+pub(super) const TANGENTS: &str = "tangents";
+pub(super) const COTANGENT_FRAME: &str = "cotangent frame";
+
+/// Points of a triangle that are looked at: shares of its corners.
+const POINTS: [[f32; 3]; 4] = [[1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0], [0.8, 0.1, 0.1], [0.1, 0.8, 0.1], [0.1, 0.1, 0.8]];
+
+/// A cotangent frame where it shows the normals that tangents show, within the tolerance: it costs no bytes.
+pub(super) fn choose(subject: &Subject<'_>, normals: Option<&NormalMap>) -> Result<Decision> {
+    const TOPIC: &str = "tangent space";
+    let Some(normals) = normals else {
+        return Ok(Decision::new(TOPIC, "none", "there is no normal map to turn"));
+    };
+    let Some(model) = &subject.material.model else {
+        let reason = format!(
+            "no tangents, {BYTES_PER_VERTEX} bytes a vertex less; both are the same on flat surfaces, and the scene names \
+             no model to measure others"
+        );
+        return Ok(Decision::new(TOPIC, COTANGENT_FRAME, reason));
+    };
+    let texture = Texture::of_normals(normals, subject.facts().edges);
+    let pixels = pixels_of(model)?;
+    let errors = Errors::of(pixels.iter().map(|pixel| pixel.difference(&texture)).collect());
+    let nanoseconds = |shade: fn(&Pixel, &Texture<3>) -> [f32; 3]| {
+        let time = median_time(5, || pixels.iter().for_each(|pixel| _ = black_box(shade(black_box(pixel), &texture))));
+        short(time.as_secs_f64() * 1e9 / pixels.len().max(1) as f64)
+    };
+    let measured = format!(
+        "normals of {} differ by {} at most, {} in the mean, in {} pixels; {} ns a pixel on one thread of the CPU, with \
+         tangents {}",
+        model.display(),
+        degrees(errors.largest),
+        short(errors.mean),
+        pixels.len(),
+        nanoseconds(Pixel::with_cotangent_frame),
+        nanoseconds(Pixel::with_tangent),
+    );
+    let tolerance = subject.tolerance().normal;
+    Ok(match errors.largest <= tolerance {
+        true => {
+            let reason = format!("no tangents, {BYTES_PER_VERTEX} bytes a vertex less: {measured}");
+            let costs = format!("{BYTES_PER_VERTEX} bytes a vertex");
+            Decision::new(TOPIC, COTANGENT_FRAME, reason).without(vec![Rejected::new(TANGENTS, costs)])
+        }
+        false => {
+            let reason = format!("{BYTES_PER_VERTEX} bytes a vertex, which normals need here");
+            Decision::new(TOPIC, TANGENTS, reason).without(vec![Rejected::new(COTANGENT_FRAME, measured)])
+        }
+    })
+}
+
+/// A point of a triangle.
+struct Pixel {
+    texcoord: [f32; 2],
+    normal: [f32; 3],
+    tangent: ([f32; 3], f32),
+    /// Two edges: any two directions on a triangle give the same frame.
+    dp: [[f32; 3]; 2],
+    duv: [[f32; 2]; 2],
+}
+
+impl Pixel {
+    fn with_tangent(&self, texture: &Texture<3>) -> [f32; 3] {
+        let (t, w) = self.tangent;
+        perturbed_normal(pixel_frame(self.normal, t, w), normalized(texture.sample(self.texcoord)))
+    }
+
+    fn with_cotangent_frame(&self, texture: &Texture<3>) -> [f32; 3] {
+        let frame = cotangent_frame(normalized(self.normal), self.dp, self.duv);
+        perturbed_normal(frame, normalized(texture.sample(self.texcoord)))
+    }
+
+    /// The angle in degrees between the two.
+    fn difference(&self, texture: &Texture<3>) -> f32 {
+        let [a, b] = [self.with_tangent(texture), self.with_cotangent_frame(texture)].map(|n| n.map(f64::from));
+        angle::degrees(a, b) as f32
+    }
+}
+
+/// Points of all triangles of a model that have an area in space and in the texture.
+fn pixels_of(model: &Path) -> Result<Vec<Pixel>> {
+    let model = Model::read(model)?;
+    let mut pixels = Vec::new();
+    for primitive in 0..model.primitives().len() {
+        let mesh = model.mesh(primitive)?;
+        // Textures are sampled with y along growing v.
+        let options = TangentOptions { convention: Convention::Dx, ..TangentOptions::default() };
+        let tangents = Baker::cpu().tangents(&mesh, &options)?;
+        pixels.extend(pixels_of_mesh(&mesh, &tangents));
+    }
+    Ok(pixels)
+}
+
+fn pixels_of_mesh(mesh: &Mesh, tangents: &Tangents) -> Vec<Pixel> {
+    let sources: Vec<usize> = tangents.sources().map(|source| source as usize).collect();
+    let triangles = tangents.triangles.as_deref().unwrap_or(mesh.triangles());
+    let normal = |vertex: usize| match &tangents.normals {
+        Some(normals) => normals[vertex],
+        None => mesh.normals().map_or([0.0; 3], |normals| normals[sources[vertex]]),
+    };
+    let pixel = |corners: [usize; 3], shares: [f32; 3]| {
+        let [p, q, r] = corners.map(|corner| mesh.positions()[sources[corner]]);
+        let uvs = corners.map(|corner| mesh.texcoords()[sources[corner]]);
+        let duv = [1, 2].map(|i| [uvs[i][0] - uvs[0][0], uvs[i][1] - uvs[0][1]]);
+        let tangent = corners.map(|corner| tangents.tangents[corner]);
+        let dp = [sub(q, p), sub(r, p)];
+        let [cross_x, cross_y, cross_z] = crate::vector::cross(dp[0], dp[1]);
+        let has_area = [cross_x, cross_y, cross_z] != [0.0; 3] && duv[0][0] * duv[1][1] != duv[0][1] * duv[1][0];
+        has_area.then(|| Pixel {
+            texcoord: mix(shares, uvs),
+            normal: mix(shares, corners.map(normal)),
+            tangent: (mix(shares, tangent.map(|[x, y, z, _]| [x, y, z])), tangent[0][3]),
+            dp,
+            duv,
+        })
+    };
+    let corners = triangles.iter().map(|triangle| triangle.map(|corner| corner as usize));
+    corners.flat_map(|corners| POINTS.map(|shares| pixel(corners, shares))).flatten().collect()
+}
+
+fn mix<const N: usize>(shares: [f32; 3], [a, b, c]: [[f32; N]; 3]) -> [f32; N] {
+    std::array::from_fn(|i| shares[0] * a[i] + shares[1] * b[i] + shares[2] * c[i])
+}

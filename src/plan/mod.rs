@@ -1,0 +1,46 @@
+//! What a scene needs: the cheapest maps that keep within its tolerances, measured on the maps themselves.
+//!
+//! A [`Scene`] says which materials there are, how they are seen, and what may go wrong. A [`Plan`] bakes candidates in
+//! memory, measures them and chooses, coarsest resolution and fewest bytes first:
+//!
+//! - no normal map where no normal leans by more than the tolerance; no parallax where no offset is larger than it at
+//!   the shallowest angle: s/2 cot a texels of the scale s, times pixels per texel;
+//! - no texel that covers less than a pixel at the nearest view;
+//! - the cheapest codes, the fewest lookups, no tangents where none are needed.
+//!
+//! What is right is, for a normal, that of the mean slope of the texels that one texel of the map stands for, in double
+//! precision; for an offset, that of relief intersection with the whole height map, from pixels spread over it, of which
+//! each is seen from its own side at the shallowest angle. An offset counts as seen from straight above: at a shallow
+//! angle the screen shows less of it. The largest error decides.
+//!
+//! A plan is a settings file that `texbake bake` runs; its [`Prediction`]s are what was measured, and
+//! [`Prediction::check`] measures what was baked against them.
+//!
+//! A height map and its candidates are held in memory.
+
+mod check;
+mod choose;
+mod decision;
+mod frames;
+mod method;
+mod normals;
+mod parallax;
+#[expect(clippy::module_inception, reason = "the plan itself, beside what it is made of")]
+mod plan;
+mod precision;
+mod prediction;
+mod scene;
+mod settings;
+mod subject;
+mod text;
+mod unmet;
+mod view;
+mod visible;
+
+pub use check::Checked;
+pub use decision::{Decision, Rejected};
+pub use plan::{FilePlan, Plan};
+pub use prediction::{MapPrediction, MaterialFacts, NormalPrediction, ParallaxPrediction, Prediction, predictions};
+pub use scene::{Scene, Tolerance};
+pub use settings::check_place;
+pub use view::{Seen, Sight, View};

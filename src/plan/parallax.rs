@@ -1,0 +1,339 @@
+//! Which parallax method at run time, and which map for it.
+
+use super::decision::{Decision, Rejected, pixels, short};
+use super::method::reads;
+use super::subject::{Reduced, Subject};
+use super::unmet::Unmet;
+use crate::baker::Baker;
+use crate::error::Result;
+use crate::io::check_parallax_format;
+use crate::map::{Depth, Encoding, HeightMap, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap};
+use crate::material::{Material, ParallaxMethod, Texture};
+use crate::measure::Views;
+use crate::ops::Precision;
+use crate::ops::bake::BakeOptions;
+use std::path::Path;
+
+/// A parallax method that keeps within its tolerance, with its map if it reads one.
+#[derive(Debug, Clone)]
+pub(super) struct ParallaxChoice {
+    pub method: ParallaxMethod,
+    pub format: Option<ParallaxFormat>,
+    /// The largest error in pixels.
+    pub error: f64,
+    /// Bytes of what the method reads, the normal map aside, over texels of the height map.
+    pub bytes: f64,
+    pub decisions: Vec<Decision>,
+}
+
+/// Pixels from which a material is looked at, each from its own side, and what they are made from. A check looks from
+/// the same ones.
+const PIXELS: usize = 8192;
+const SEED: u64 = 1;
+
+/// Steps k of FGED2 listing 7.9 that are tried.
+const MOST_STEPS: u32 = 16;
+
+/// Halvings of a step of relief intersection: a 32nd of it.
+const BISECTIONS: u32 = 5;
+
+/// Runs of which a time is the median.
+const RUNS: usize = 5;
+
+/// The formats that files of this extension hold, cheapest first; of those that cost the same, one with a code for zero.
+pub(super) fn formats(extension: &str) -> Vec<ParallaxFormat> {
+    let file = Path::new("map").with_extension(extension);
+    let encodings = [Encoding::Snorm, Encoding::Biased, Encoding::Unorm, Encoding::Float];
+    let depths = [Depth::Bits8, Depth::Bits16, Depth::Float16, Depth::Float32];
+    let all = encodings.into_iter().flat_map(|encoding| depths.map(|depth| ParallaxFormat { encoding, depth }));
+    let mut formats: Vec<_> = all.filter(|format| check_parallax_format(&file, *format).is_ok()).collect();
+    formats.sort_by_key(|format| format.depth.bytes());
+    formats.dedup_by_key(|format| format.depth);
+    formats
+}
+
+/// The largest offset that can be seen at the shallowest angle a, in pixels: |2h - 1| s/2 cot a texels of the greatest
+/// |2h - 1|, the offset of relief as high as it gets.
+pub(super) fn largest_offset(subject: &Subject<'_>, reduced: &Reduced<'_>) -> Result<f64> {
+    let scale = subject.facts().scale.resolve(subject.heights.size())?;
+    let texels = f64::from(scale.x.abs().max(scale.y.abs())) / f64::from(scale.q);
+    let heights = Texture::of_heights(&reduced.heights, reduced.options.edges);
+    let highest = heights.texels().iter().map(|[h]| f64::from(2.0 * h - 1.0).abs()).fold(0.0, f64::max);
+    let angle = subject.seen.angle.to_radians();
+    // Straight from above the tangent is no exact infinity.
+    let cotangent = if subject.seen.angle == 90.0 { 0.0 } else { 1.0 / angle.tan() };
+    Ok(highest * texels / 2.0 * cotangent * subject.seen.pixels_per_texel)
+}
+
+/// No parallax, which is right where nothing moves by more than the tolerance.
+pub(super) fn none(subject: &Subject<'_>, offset: f64) -> Option<ParallaxChoice> {
+    let tolerance = subject.tolerance().parallax;
+    let reason = format!(
+        "the largest offset, seen at {} degrees, is {}, of {} allowed",
+        short(subject.seen.angle),
+        pixels(offset),
+        short(tolerance)
+    );
+    let decisions = vec![Decision::new("parallax", "none", reason)];
+    let method = ParallaxMethod::None;
+    (offset <= tolerance).then(|| ParallaxChoice { method, format: None, error: offset, bytes: 0.0, decisions })
+}
+
+/// The method of the fewest lookups that keeps within the tolerances; of those, the one of the fewest bytes.
+pub(super) fn choose(
+    subject: &Subject<'_>,
+    reduced: &Reduced<'_>,
+    normals: Option<NormalFormat>,
+    offset: f64,
+    bytes_left: f64,
+) -> Result<Result<ParallaxChoice, Unmet>> {
+    let mut search = Search::new(subject, reduced, normals, bytes_left)?;
+    for method in search.candidates() {
+        subject.monitor.check()?;
+        if let Some(choice) = search.attempt(method, offset)? {
+            return Ok(Ok(choice));
+        }
+    }
+    Ok(Err(search.unmet()))
+}
+
+/// What was tried.
+struct Search<'a> {
+    subject: &'a Subject<'a>,
+    reduced: &'a Reduced<'a>,
+    normals: NormalMap,
+    has_normals: bool,
+    bytes_left: f64,
+    formats: Vec<ParallaxFormat>,
+    /// The material with the finest parallax map.
+    finest: Material,
+    views: Views,
+    truth: Vec<[f32; 2]>,
+    tried: Vec<Tried>,
+}
+
+struct Tried {
+    method: ParallaxMethod,
+    error: f64,
+    bytes: f64,
+    milliseconds: Option<f64>,
+}
+
+impl<'a> Search<'a> {
+    fn new(
+        subject: &'a Subject<'a>,
+        reduced: &'a Reduced<'a>,
+        normals: Option<NormalFormat>,
+        bytes_left: f64,
+    ) -> Result<Self> {
+        let formats = formats(&subject.material.format);
+        let finest = formats.last().copied().unwrap_or_default();
+        let has_normals = normals.is_some();
+        let normals = super::normals::bake(subject.baker, reduced, normals.unwrap_or_default(), Precision::Exact)?;
+        let parallax = bake(subject.baker, reduced, finest, Precision::Exact)?;
+        let finest = material(&subject.heights, &normals, &parallax, &subject.facts().bake())?;
+        let (views, truth) = views(&finest, subject.seen.angle);
+        let tried = Vec::new();
+        Ok(Self { subject, reduced, normals, has_normals, bytes_left, formats, finest, views, truth, tried })
+    }
+
+    /// The methods, fewest lookups first.
+    fn candidates(&self) -> Vec<ParallaxMethod> {
+        let mut methods = vec![ParallaxMethod::Limited, ParallaxMethod::Welsh];
+        if self.has_normals {
+            methods.extend([1.0, 3.0].map(|limit| ParallaxMethod::Plane { limit }));
+        }
+        methods.extend((1..=MOST_STEPS).map(ParallaxMethod::steps));
+        let angle = self.subject.seen.angle.to_radians();
+        let truth = self.finest.truth([angle.cos() as f32, 0.0, angle.sin() as f32]);
+        let most = truth.fetches();
+        let halvings = (2..).map(|power| 1u32 << power).take_while(|steps| *steps < most);
+        methods.extend(halvings.map(|steps| ParallaxMethod::Relief { steps, bisections: BISECTIONS }));
+        methods.push(truth);
+        methods.sort_by(|a, b| {
+            let cost = |method: &ParallaxMethod| (method.fetches(), self.bytes(*method, self.formats[0].depth));
+            let ((a, a_bytes), (b, b_bytes)) = (cost(a), cost(b));
+            a.cmp(&b).then(a_bytes.total_cmp(&b_bytes))
+        });
+        methods
+    }
+
+    /// Bytes over texels of the height map of what a method reads, the normal map aside.
+    fn bytes(&self, method: ParallaxMethod, depth: Depth) -> f64 {
+        match method {
+            ParallaxMethod::None => 0.0,
+            ParallaxMethod::Steps { .. } => depth.bytes() as f64 * self.reduced.share(),
+            _ => self.subject.heights.height_type().bytes() as f64,
+        }
+    }
+
+    fn error(&self, material: &Material, method: ParallaxMethod) -> f64 {
+        self.views.errors(material, method, &self.truth).largest * self.subject.seen.pixels_per_texel
+    }
+
+    /// The choice of this method, if it keeps within the tolerances.
+    fn attempt(&mut self, method: ParallaxMethod, offset: f64) -> Result<Option<ParallaxChoice>> {
+        let tolerance = self.subject.tolerance();
+        let error = self.error(&self.finest, method);
+        let milliseconds = tolerance.milliseconds.map(|_| self.milliseconds(method));
+        let bytes = self.bytes(method, self.formats[0].depth);
+        let is_slow = milliseconds.zip(tolerance.milliseconds).is_some_and(|(takes, bound)| takes > bound);
+        if error > tolerance.parallax || is_slow || bytes > self.bytes_left {
+            self.tried.push(Tried { method, error, bytes, milliseconds });
+            return Ok(None);
+        }
+        if !matches!(method, ParallaxMethod::Steps { .. }) {
+            return Ok(Some(self.choice(method, None, error, bytes, milliseconds, offset, Vec::new())));
+        }
+        let mut coarser = Vec::new();
+        for format in self.formats.clone() {
+            let map = bake(self.subject.baker, self.reduced, format, Precision::Exact)?;
+            let material = material(&self.subject.heights, &self.normals, &map, &self.subject.facts().bake())?;
+            let (error, bytes) = (self.error(&material, method), self.bytes(method, format.depth));
+            if error <= tolerance.parallax && bytes <= self.bytes_left {
+                return Ok(Some(self.choice(method, Some(format), error, bytes, milliseconds, offset, coarser)));
+            }
+            coarser.push(Rejected::new(describe(format), format!("off by up to {}", pixels(error))));
+        }
+        self.tried.push(Tried { method, error, bytes, milliseconds });
+        Ok(None)
+    }
+
+    /// Milliseconds that a screen full of pixels takes on all threads of this machine.
+    fn milliseconds(&self, method: ParallaxMethod) -> f64 {
+        let threads = std::thread::available_parallelism().map_or(1, usize::from) as f64;
+        let screen = self.subject.material.view.resolution.map_or(0.0, |[width, height]| width * height);
+        self.views.nanoseconds(&self.finest, method, RUNS) * screen / 1e6 / threads
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "what was measured of one method, told in one place")]
+    fn choice(
+        &self,
+        method: ParallaxMethod,
+        format: Option<ParallaxFormat>,
+        error: f64,
+        bytes: f64,
+        milliseconds: Option<f64>,
+        offset: f64,
+        coarser: Vec<Rejected>,
+    ) -> ParallaxChoice {
+        let tolerance = self.subject.tolerance();
+        let mut reason = format!(
+            "off by {} at most, of {} allowed, in {PIXELS} pixels seen at {} degrees; {} lookups of {}",
+            pixels(error),
+            short(tolerance.parallax),
+            short(self.subject.seen.angle),
+            method.fetches(),
+            reads(method),
+        );
+        if let Some((takes, bound)) = milliseconds.zip(tolerance.milliseconds) {
+            reason += &format!(
+                "; a screen full of it takes {} ms on the CPU's threads here, of {} allowed",
+                short(takes),
+                short(bound)
+            );
+        }
+        let mut rejected = vec![Rejected::new("none", format!("the largest offset is {}", pixels(offset)))];
+        rejected.extend(self.rejected());
+        let mut decisions = vec![Decision::new("parallax", method, reason).without(rejected)];
+        decisions.push(match format {
+            Some(format) => {
+                let reason = format!("off by {} at most, of {} allowed", pixels(error), short(tolerance.parallax));
+                Decision::new("parallax map", describe(format), reason).without(coarser)
+            }
+            None => {
+                let reason = format!("{method} reads {}, {} bytes a texel", reads(method), short(bytes));
+                Decision::new("parallax map", "none", reason)
+            }
+        });
+        ParallaxChoice { method, format, error, bytes, decisions }
+    }
+
+    /// Each kind of method that was tried, at its best.
+    fn rejected(&self) -> Vec<Rejected> {
+        let kinds: [(&str, fn(&ParallaxMethod) -> bool); 5] = [
+            ("limited", |method| matches!(method, ParallaxMethod::Limited)),
+            ("welsh", |method| matches!(method, ParallaxMethod::Welsh)),
+            ("plane", |method| matches!(method, ParallaxMethod::Plane { .. })),
+            ("steps", |method| matches!(method, ParallaxMethod::Steps { .. })),
+            ("relief", |method| matches!(method, ParallaxMethod::Relief { .. })),
+        ];
+        let of_kind = |is_it: fn(&ParallaxMethod) -> bool| {
+            let tried: Vec<&Tried> = self.tried.iter().filter(|tried| is_it(&tried.method)).collect();
+            let best = tried.iter().min_by(|a, b| a.error.total_cmp(&b.error))?;
+            let what = match &tried[..] {
+                [one] => one.method.to_string(),
+                [first, .., last] => format!("{} to {}", first.method, last.method),
+                [] => return None,
+            };
+            let at = if tried.len() > 1 { format!(", with {}", best.method) } else { String::new() };
+            let cost = best.milliseconds.map(|ms| format!(", {} ms", short(ms))).unwrap_or_default();
+            let bytes = match best.bytes > self.bytes_left {
+                true => format!(", and {} bytes a texel are left", short(self.bytes_left)),
+                false => String::new(),
+            };
+            Some(Rejected::new(what, format!("off by up to {}{at}{cost}{bytes}", pixels(best.error))))
+        };
+        kinds.into_iter().filter_map(|(_, is_it)| of_kind(is_it)).collect()
+    }
+
+    /// Which tolerance rules all methods out.
+    fn unmet(&self) -> Unmet {
+        let tolerance = self.subject.tolerance();
+        let is_right = |tried: &&Tried| tried.error <= tolerance.parallax;
+        let fits = |tried: &&Tried| tried.bytes <= self.bytes_left;
+        let least = |by: fn(&Tried) -> f64, tried: Vec<&Tried>, name, wanted, unit, more: f64| {
+            let best = tried.into_iter().min_by(|a, b| by(a).total_cmp(&by(b)));
+            let (value, with) = best.map_or((0.0, String::new()), |best| (by(best) + more, best.method.to_string()));
+            Unmet { tolerance: name, wanted, unit, best: value, with }
+        };
+        let right: Vec<&Tried> = self.tried.iter().filter(is_right).collect();
+        let right_and_small: Vec<&Tried> = right.iter().copied().filter(fits).collect();
+        match (tolerance.milliseconds, tolerance.bytes_per_texel) {
+            (Some(bound), _) if !right_and_small.is_empty() => {
+                let time = |tried: &Tried| tried.milliseconds.unwrap_or_default();
+                least(time, right_and_small, "milliseconds", bound, "milliseconds", 0.0)
+            }
+            (_, Some(bound)) if !right.is_empty() => {
+                let used = bound - self.bytes_left;
+                least(|tried| tried.bytes, right, "bytes-per-texel", bound, "bytes a texel", used)
+            }
+            _ => least(|tried| tried.error, self.tried.iter().collect(), "parallax", tolerance.parallax, "pixels", 0.0),
+        }
+    }
+}
+
+/// Where a material is looked at from at its shallowest, and what is right there.
+pub(super) fn views(material: &Material, angle: f64) -> (Views, Vec<[f32; 2]>) {
+    let views = Views::at_elevation(angle, PIXELS, SEED);
+    let truth = views.truth(material);
+    (views, truth)
+}
+
+/// The maps of a reduced height map with the whole one, as a scene has them.
+pub(super) fn material(
+    heights: &HeightMap,
+    normals: &NormalMap,
+    parallax: &ParallaxMap,
+    options: &BakeOptions,
+) -> Result<Material> {
+    Material::of_maps(heights, normals, parallax, options.scale.resolve(heights.size())?, options.edges)
+}
+
+/// A parallax map of the reduced heights.
+pub(super) fn bake(
+    baker: &Baker,
+    reduced: &Reduced<'_>,
+    format: ParallaxFormat,
+    precision: Precision,
+) -> Result<ParallaxMap> {
+    let options = BakeOptions { normal: None, parallax: Some(format), precision, ..reduced.options };
+    let maps = baker.bake(&reduced.heights, &options)?;
+    Ok(maps.parallax.unwrap_or_else(|| unreachable!("it was asked for")))
+}
+
+/// `biased 8, 1 byte a texel`.
+pub(super) fn describe(format: ParallaxFormat) -> String {
+    let bytes = format.depth.bytes();
+    format!("{} {}, {bytes} {} a texel", format.encoding, format.depth, if bytes == 1 { "byte" } else { "bytes" })
+}

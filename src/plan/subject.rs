@@ -1,0 +1,80 @@
+//! A height map under plan, whole and reduced.
+
+use super::scene::{Facts, Material, Tolerance};
+use super::view::Seen;
+use super::visible::VisibleNormals;
+use crate::baker::Baker;
+use crate::error::Result;
+use crate::io::ReadOptions;
+use crate::map::HeightMap;
+use crate::ops::bake::BakeOptions;
+use crate::stream::Monitor;
+use std::path::Path;
+
+/// A height map under plan.
+pub(super) struct Subject<'a> {
+    pub path: &'a Path,
+    pub material: &'a Material,
+    pub heights: HeightMap,
+    pub seen: Seen,
+    pub baker: &'a Baker,
+    pub monitor: &'a Monitor,
+}
+
+/// A height map at one of the resolutions that it can be reduced to.
+pub(super) struct Reduced<'a> {
+    /// The factor.
+    pub by: u32,
+    pub heights: HeightMap,
+    /// A bake of it, without maps.
+    pub options: BakeOptions,
+    pub visible: VisibleNormals<'a>,
+}
+
+/// The greatest factor of [`ReadOptions::shrink`].
+const GREATEST_SHRINK: u32 = 64;
+
+/// A texel that is a millionth wider than a pixel is none: views are given in decimals.
+const MARGIN: f64 = 1e-6;
+
+impl<'a> Subject<'a> {
+    pub fn read(path: &'a Path, material: &'a Material, baker: &'a Baker, monitor: &'a Monitor) -> Result<Self> {
+        let (heights, _) = HeightMap::read_with(path, &material.facts.read)?;
+        let seen = material.view.of(heights.size(), material.extent);
+        Ok(Self { path, material, heights, seen, baker, monitor })
+    }
+
+    pub fn facts(&self) -> &Facts {
+        &self.material.facts
+    }
+
+    pub fn tolerance(&self) -> Tolerance {
+        self.material.tolerance
+    }
+
+    /// The factors by which the map can be reduced so that a texel still covers no more than a pixel, greatest first;
+    /// at last 1.
+    pub fn factors(&self) -> Vec<u32> {
+        let (width, height) = (self.heights.size().width(), self.heights.size().height());
+        let divides = |by: &u32| width % *by as usize == 0 && height % *by as usize == 0;
+        let is_seen = |by: &u32| *by == 1 || f64::from(*by) * self.seen.pixels_per_texel <= 1.0 + MARGIN;
+        (1..=GREATEST_SHRINK).rev().filter(divides).filter(is_seen).collect()
+    }
+
+    /// The map reduced by one of the factors.
+    pub fn reduced(&self, by: u32) -> Result<Reduced<'_>> {
+        let shrink = by.try_into().unwrap_or(std::num::NonZeroU32::MIN);
+        let read = ReadOptions { shrink, ..self.facts().read.clone() };
+        let (heights, _) = HeightMap::read_with(self.path, &read)?;
+        let whole = self.facts().bake();
+        let visible = VisibleNormals::new(&self.heights, &whole, by)?;
+        Ok(Reduced { by, heights, options: BakeOptions { scale: whole.scale.shrunk(shrink)?, ..whole }, visible })
+    }
+}
+
+impl Reduced<'_> {
+    /// What a byte for each texel of this map is for each of the whole one.
+    pub fn share(&self) -> f64 {
+        1.0 / f64::from(self.by * self.by)
+    }
+}

@@ -1,0 +1,128 @@
+//! Shots on a GPU: the host of `kernels/preview.wgsl`.
+
+use super::shot::{Samples, Shot, Surface};
+use crate::backend::gpu::{Binding, Gpu, OwnPipeline};
+use crate::error::Result;
+use crate::map::Edge;
+use crate::material::{ParallaxMethod, Texture};
+use crate::shading::step_scale;
+use crate::stream::Monitor;
+use half::f16;
+
+/// The kernel, and those of the shader library that it calls.
+pub(crate) const WGSL: &str = concat!(
+    include_str!("../../kernels/preview.wgsl"),
+    include_str!("../../kernels/shading/welsh_offset.wgsl"),
+    include_str!("../../kernels/shading/plane_offset.wgsl"),
+    include_str!("../../kernels/shading/stepped_offset.wgsl"),
+    include_str!("../../kernels/shading/relief_offset.wgsl"),
+    include_str!("../../kernels/shading/lighting.wgsl"),
+);
+
+/// Invocations along each side of a workgroup.
+const GROUP: u32 = 8;
+/// Lookups in one dispatch, at most: drivers lose patience after seconds, and software is slow.
+const LOOKUPS: u64 = 1 << 26;
+/// Words for each sample: a colour and an offset.
+const WORDS: usize = 5;
+
+/// Whether the device's sampler does what a shot's maps need: it repeats.
+pub(super) fn can_take(shot: &Shot<'_>) -> bool {
+    let edges = shot.material.heights().edges();
+    edges.x == Edge::Wrap && edges.y == Edge::Wrap
+}
+
+/// Takes a shot.
+///
+/// # Errors
+/// [`crate::Error::Device`] if the device fails; [`crate::Error::Cancelled`].
+pub(super) fn take(gpu: &Gpu, shot: &Shot<'_>, wgsl: &str, monitor: &Monitor) -> Result<Samples> {
+    let pipeline = gpu.untested().compile(wgsl, "preview", &[])?;
+    let maps = Maps::of(shot, gpu.untested().filters_floats());
+    let [across, down] = shot.count;
+    let lookups = u64::from(shot.method().fetches() + 7) * u64::from(across);
+    let rows = (LOOKUPS / lookups).clamp(1, u64::from(down)) as u32;
+    let mut words = Vec::new();
+    for first in (0..down).step_by(rows as usize) {
+        monitor.check()?;
+        words.extend(maps.samples(&pipeline, shot, first, rows.min(down - first))?);
+    }
+    let (samples, _) = words.as_chunks::<WORDS>();
+    let split = |words: &[u32; WORDS]| {
+        let [red, green, blue, x, y] = words.map(f32::from_bits);
+        ([red, green, blue], [x, y])
+    };
+    let (colours, offsets) = samples.iter().map(split).unzip();
+    Ok(Samples { colours, offsets })
+}
+
+/// A material's textures as words, one channel each: heights, parallax, and the normals' three.
+struct Maps([(Binding, Vec<u32>); 5]);
+
+impl Maps {
+    /// The maps of a shot; rounded to halves if the device filters nothing finer.
+    fn of(shot: &Shot<'_>, filters_floats: bool) -> Self {
+        fn words<const N: usize>(map: &Texture<N>, channel: usize, filters_floats: bool) -> (Binding, Vec<u32>) {
+            let word = |texel: &[f32; N]| match filters_floats {
+                true => texel[channel].to_bits(),
+                false => f16::from_f32(texel[channel]).to_f32().to_bits(),
+            };
+            (Binding::Texture(map.size()), map.texels().iter().map(word).collect())
+        }
+        let material = shot.material;
+        let normals = |channel| words(material.normals(), channel, filters_floats);
+        Self([
+            words(material.heights(), 0, filters_floats),
+            words(material.parallax(), 0, filters_floats),
+            normals(0),
+            normals(1),
+            normals(2),
+        ])
+    }
+
+    /// The words of some rows of samples.
+    fn samples(&self, pipeline: &OwnPipeline<'_>, shot: &Shot<'_>, first: u32, rows: u32) -> Result<Vec<u32>> {
+        let across = shot.count[0];
+        let params = params(shot, first);
+        // A NaN is no colour.
+        let poison = vec![f32::NAN.to_bits(); WORDS * across as usize * rows as usize];
+        let [heights, parallax, x, y, z] = self.0.each_ref().map(|(binding, words)| (*binding, words.as_slice()));
+        let buffers = [
+            (Binding::Uniform, params.as_slice()),
+            heights,
+            parallax,
+            x,
+            y,
+            z,
+            (Binding::Sampler, &[]),
+            (Binding::ReadWrite, &poison),
+        ];
+        let written = pipeline.run(&buffers, [across.div_ceil(GROUP), rows.div_ceil(GROUP), 1])?;
+        Ok(written.into_iter().flatten().collect())
+    }
+}
+
+/// The words of the kernel's parameters, in their order.
+fn params(shot: &Shot<'_>, first_row: u32) -> Vec<u32> {
+    let (rays, look, material) = (shot.rays(), shot.look, shot.material);
+    let (method, steps, bisections, longest): (u32, u32, u32, f32) = match shot.method() {
+        ParallaxMethod::None => (0, 0, 0, 0.0),
+        ParallaxMethod::Welsh => (1, 0, 0, 0.0),
+        ParallaxMethod::Limited => (2, 0, 0, 0.0),
+        ParallaxMethod::Plane { limit } => (3, 0, 0, limit),
+        ParallaxMethod::Steps { k } => (4, k.get(), 0, 0.0),
+        ParallaxMethod::Relief { steps, bisections } => (5, steps, bisections, 0.0),
+    };
+    let texels = [material.size().width() as f32, material.size().height() as f32];
+    let step = match shot.method() {
+        ParallaxMethod::Steps { k } => step_scale(material.scale(), texels, k, 1.0),
+        _ => [0.0; 2],
+    };
+    let vectors = [rays.eye, rays.ahead, rays.right, rays.down, look.light.direction(), look.low, look.high];
+    let mut words: Vec<u32> = vectors.iter().flat_map(|&[x, y, z]| [x, y, z, 0.0]).map(f32::to_bits).collect();
+    words.extend(material.scale_in_uv().into_iter().chain(step).map(f32::to_bits));
+    words.extend([shot.count[0], shot.count[1], first_row, u32::from(shot.surface == Surface::Flat)]);
+    words.extend([method, steps, bisections, longest.to_bits()]);
+    words.extend([look.ambient, look.highlight, look.shininess, rays.proportion].map(f32::to_bits));
+    words
+}
