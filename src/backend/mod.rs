@@ -58,6 +58,12 @@ pub(crate) trait Backend: Send + Sync {
     /// # Errors
     /// [`crate::Error::Device`].
     fn tangents(&self, plan: &TangentPlan<'_>, tangents: &mut [[f32; 4]]) -> Result<()>;
+
+    /// The GPU that it is, to compile other kernels for.
+    #[cfg(feature = "gpu")]
+    fn gpu(&self) -> Option<&gpu::Untested> {
+        None
+    }
 }
 
 /// Bytes of one row on its way through an operation.

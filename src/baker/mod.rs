@@ -134,6 +134,12 @@ impl Baker {
         Self { backend, fallback: None, reason: "asked for".into() }
     }
 
+    /// The GPU, if it is one, to compile other kernels for.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn gpu_device(&self) -> Option<&crate::backend::gpu::Untested> {
+        self.backend.gpu()
+    }
+
     /// What runs: the backend and its device.
     pub fn name(&self) -> String {
         crate::backend::name(self.backend.kind(), &self.backend.device())

@@ -154,6 +154,7 @@ pub fn run(arguments: &MeasureArguments) -> Result<Exit, Failure> {
     let report = Report::new(command(), &options, input, Machine::this(&devices), figures);
     folder.write(&report)?;
     if !arguments.quiet {
+        report.figures.notes.iter().for_each(|note| say(format_args!("warning: {note}")));
         show(&report.figures);
         put(format_args!("{}: report.json, report.md and plots", arguments.output.display()));
     }

@@ -4,7 +4,7 @@ use super::blends::{self, BlendFigure, Layers, blend_figures};
 use super::frames::{Extent, FrameFigure, frame_figures};
 use super::front::{Front, Statistic};
 use super::maps::{NormalFigure, PRECISIONS, ParallaxFigure, normal_figures, parallax_figures};
-use super::parallax::{OffsetFigure, offset_figures};
+use super::parallax::{OffsetFigure, OffsetTime, offset_figures};
 use super::region::{Region, quarter_turned, scale_for};
 use super::steps::{Progress, Steps};
 use super::surfaces::SURFACES;
@@ -68,12 +68,16 @@ pub struct Figures {
     pub blends: Vec<BlendFigure>,
     /// Parallax methods, on `pixels` pixels each.
     pub offsets: Vec<OffsetFigure>,
+    /// The same on GPUs, from the elevation of the fronts, on the middle 512 texels of the map.
+    pub offset_times: Vec<OffsetTime>,
     /// Pixels that each parallax method is measured on.
     pub pixels: usize,
     /// Ways to tangent space.
     pub frames: Vec<FrameFigure>,
     /// What each step buys and costs.
     pub fronts: Vec<Front>,
+    /// What could not be measured, and why.
+    pub notes: Vec<String>,
 }
 
 impl MeasureOptions {
@@ -139,9 +143,10 @@ pub fn measure(
     let material = Material::bake(&Baker::cpu(), &heights, &BakeOptions { normal: None, parallax: None, ..bake })?;
     let pixels = options.pixels();
     let offsets = offset_figures(&material, &options.elevations(), pixels, seed, runs, steps)?;
+    let (offset_times, notes) = offset_times(measured.devices, &heights, &bake, options, steps)?;
     let frames = frame_figures(&material, measured.models, Extent { pixels, seed, runs }, steps)?;
-    let fronts = fronts(&normal_maps, &offsets, options.elevation);
-    Ok(Figures { region, normal_maps, parallax_maps, blends, offsets, pixels, frames, fronts })
+    let fronts = fronts(&normal_maps, &offsets, &offset_times, options.elevation);
+    Ok(Figures { region, normal_maps, parallax_maps, blends, offsets, offset_times, pixels, frames, fronts, notes })
 }
 
 /// Steps of a measurement.
@@ -149,12 +154,69 @@ fn count(measured: &Measured<'_>, options: &MeasureOptions) -> usize {
     let maps = PRECISIONS.len() * (normal_formats(options.convention).len() + parallax_formats().len());
     let blends = blends::FORMATS.len() * blends::methods().len();
     let meshes = SURFACES.len() + measured.models.len();
-    measured.devices.len() * (maps + blends) + options.elevations().len() + meshes
+    measured.devices.len() * (maps + blends) + options.elevations().len() + gpus(measured.devices) + meshes
+}
+
+/// The texels on a side of the map that GPUs are timed with: textures are uploaded for each run.
+#[cfg(feature = "gpu")]
+const SIDE_ON_GPU: usize = 512;
+
+/// How long parallax methods take on the devices that are GPUs, and why on some they were not timed.
+#[cfg(feature = "gpu")]
+fn offset_times(
+    devices: &[Baker],
+    heights: &HeightMap,
+    bake: &BakeOptions,
+    options: &MeasureOptions,
+    steps: &mut Steps<'_>,
+) -> Result<(Vec<OffsetTime>, Vec<String>)> {
+    let (mut times, mut notes) = (Vec::new(), Vec::new());
+    if gpus(devices) == 0 {
+        return Ok((times, notes));
+    }
+    let part = Region::middle(heights.size(), SIDE_ON_GPU).of(heights)?;
+    let bake = BakeOptions { scale: scale_for(bake.scale.resolve(heights.size())?, part.size())?, ..*bake };
+    let material = Material::bake(&Baker::cpu(), &part, &bake)?;
+    let seen = (options.elevation, options.pixels(), options.seed);
+    for device in devices {
+        match super::gpu_time::offset_times(device, &material, seen, options.runs, steps) {
+            Ok(found) => times.extend(found),
+            Err(Error::Device { adapter, reason }) => {
+                notes.push(format!("parallax was not timed on {adapter}: {reason}"));
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Ok((times, notes))
+}
+
+#[cfg(feature = "gpu")]
+use super::gpu_time::gpus;
+
+#[cfg(not(feature = "gpu"))]
+fn offset_times(
+    _: &[Baker],
+    _: &HeightMap,
+    _: &BakeOptions,
+    _: &MeasureOptions,
+    _: &mut Steps<'_>,
+) -> Result<(Vec<OffsetTime>, Vec<String>)> {
+    Ok(Default::default())
+}
+
+#[cfg(not(feature = "gpu"))]
+fn gpus(_: &[Baker]) -> usize {
+    0
 }
 
 /// Storage of normal maps and time of bakes; fetches and time of parallax, whose largest errors are where one bump hides
 /// another, by their mean too.
-fn fronts(normal_maps: &[NormalFigure], offsets: &[OffsetFigure], elevation: f64) -> Vec<Front> {
+fn fronts(
+    normal_maps: &[NormalFigure],
+    offsets: &[OffsetFigure],
+    offset_times: &[OffsetTime],
+    elevation: f64,
+) -> Vec<Front> {
     let first = normal_maps.first().map(|figure| (&figure.stored.device, &figure.stored.precision));
     let is_first = |figure: &&NormalFigure| first == Some((&figure.stored.device, &figure.stored.precision));
     let by = Statistic::Percentile99;
@@ -177,6 +239,17 @@ fn fronts(normal_maps: &[NormalFigure], offsets: &[OffsetFigure], elevation: f64
         let from = |what: &str| format!("{what} of parallax, seen from {elevation} degrees");
         fronts.push(Front::new(from("fetches"), by, ["fetches per pixel", "texels"], fetches));
         fronts.push(Front::new(from("time"), by, ["ns per pixel", "texels"], times));
+    }
+    for times in offset_times.chunk_by(|a, b| a.device == b.device) {
+        let by = Statistic::Mean;
+        let error = |method: &str| {
+            let figure = offsets.iter().find(|it| it.elevation_degrees == elevation && it.method == method)?;
+            Some(by.of(&figure.error_texels))
+        };
+        let on_gpu =
+            times.iter().filter_map(|it| Some((it.method.clone(), it.nanoseconds_per_pixel, error(&it.method)?)));
+        let name = format!("time of parallax on {}, seen from {elevation} degrees", times[0].device);
+        fronts.push(Front::new(name, by, ["ns per pixel", "texels"], on_gpu));
     }
     fronts
 }

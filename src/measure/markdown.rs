@@ -42,6 +42,7 @@ impl Report {
             machine.devices.join("; "),
         ));
         page.line(format_args!("```\n{}\n```\n", self.command));
+        self.figures.notes.iter().for_each(|note| page.line(format_args!("{note}\n")));
         page.line("Errors are given as largest / what 99 of 100 do not exceed / mean.\n");
     }
 
@@ -110,6 +111,18 @@ impl Report {
             page.row(&[&elevation, &it.method, &it.fetches.to_string(), &error, &digits(it.nanoseconds_per_pixel)]);
         }
         page.line("");
+        if !self.figures.offset_times.is_empty() {
+            page.line(
+                "On GPUs, by the WGSL of the shader library: dispatches of many pixels, less what one without offsets \
+                 takes, on the middle 512 texels of the map as textures of floats. The plane takes three lookups there.\n",
+            );
+            page.head(&["device", "elevation", "method", "ns/pixel"], 3);
+            for it in &self.figures.offset_times {
+                let (elevation, time) = (digits(it.elevation_degrees), digits(it.nanoseconds_per_pixel));
+                page.row(&[&it.device, &elevation, &it.method, &time]);
+            }
+            page.line("");
+        }
     }
 
     fn put_frames(&self, page: &mut Page) {

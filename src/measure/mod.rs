@@ -28,6 +28,8 @@ mod folder;
 mod formats;
 mod frames;
 mod front;
+#[cfg(feature = "gpu")]
+mod gpu_time;
 mod maps;
 mod markdown;
 mod normals;
@@ -54,7 +56,7 @@ pub use front::{Candidate, Front, GAIN, Statistic, Step, digits, pareto_front};
 pub use maps::{NormalFigure, ParallaxFigure, Stored};
 pub use normals::TrueNormals;
 pub use offsets::{View, Views};
-pub use parallax::{OffsetFigure, parallax_methods};
+pub use parallax::{OffsetFigure, OffsetTime, parallax_methods};
 pub use region::{Region, quarter_turned};
 pub use report::{Input, Machine, Report};
 pub use steps::Progress;

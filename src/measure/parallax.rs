@@ -21,6 +21,19 @@ pub struct OffsetFigure {
     pub nanoseconds_per_pixel: f64,
 }
 
+/// The time of a parallax method on a GPU.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OffsetTime {
+    /// The GPU.
+    pub device: String,
+    /// The angle between the view and the surface.
+    pub elevation_degrees: f64,
+    /// The method, as [`ParallaxMethod`] prints it.
+    pub method: String,
+    /// Time by the WGSL of the shader library, of many pixels at once: the median.
+    pub nanoseconds_per_pixel: f64,
+}
+
 /// Every method: none, Welsh's, limited, planes with two limits, k steps up to 16, and relief intersection by few steps
 /// and by many.
 pub fn parallax_methods() -> Vec<ParallaxMethod> {

@@ -258,6 +258,10 @@ impl Backend for Gpu {
         tangents_self_test::accept(&self.untested.device, plan)?;
         self.untested.tangents(plan, out)
     }
+
+    fn gpu(&self) -> Option<&Untested> {
+        Some(&self.untested)
+    }
 }
 
 /// Every kernel's text.

@@ -59,7 +59,11 @@ pub(super) fn plots(figures: &Figures) -> Result<Vec<Plot>> {
         let chart = Chart {
             title: front.title(),
             x: Axis::new(front.cost_unit, spacing, front.candidates.iter().map(|it| it.cost)),
-            y: Axis::new(front.error_unit, Spacing::Log, front.candidates.iter().map(|it| it.error)),
+            y: Axis::new(
+                format!("error in {}", front.error_unit),
+                Spacing::Log,
+                front.candidates.iter().map(|it| it.error),
+            ),
             lines: Vec::new(),
             others: points(false).into_iter().map(|(_, cost, error)| (cost, error)).collect(),
             front: best,
@@ -114,6 +118,6 @@ fn steps(figures: &Figures, by: Statistic) -> Chart {
 fn lines(title: String, (x, spacing): (&str, Spacing), lines: Vec<Series>) -> Chart {
     let points = || lines.iter().flat_map(|series| &series.points);
     let x = Axis::new(x, spacing, points().map(|point| point.0));
-    let y = Axis::new("texels", Spacing::Log, points().map(|point| point.1));
+    let y = Axis::new("error in texels", Spacing::Log, points().map(|point| point.1));
     Chart { title, x, y, lines, others: Vec::new(), front: Vec::new() }
 }
