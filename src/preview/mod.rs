@@ -14,6 +14,7 @@ pub(crate) mod gpu;
 mod labels;
 mod look;
 mod model_sheet;
+mod palette;
 mod picture;
 mod raster;
 mod renderer;

@@ -9,6 +9,7 @@ use crate::material::{Material, ParallaxMethod};
 use crate::stream::Monitor;
 use plotters::style::FontStyle;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// What is on the picture of a model.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,10 +79,7 @@ pub fn model_sheet(
     options: &ModelSheetOptions,
     monitor: &Monitor,
 ) -> Result<Picture> {
-    let side = options.panel as usize;
-    let columns = options.paints.len();
-    let size = [2 * MARGIN + columns * (side + GAP) - GAP.min(columns), 2 * MARGIN + TITLE + LINE + side];
-    let mut picture = Picture::filled(size, PAPER)?;
+    let (side, columns) = (options.panel as usize, options.paints.len());
     let viewpoint = options.viewpoint(meshes);
     let paint = |&paint: &Paint| {
         let mut canvas = Canvas::new(side * SAMPLES, viewpoint, BACKGROUND);
@@ -92,9 +90,13 @@ pub fn model_sheet(
         Picture::of_samples(canvas.colours(), side * SAMPLES, SAMPLES)
     };
     let panels: Result<Vec<Picture>> = options.paints.par_iter().map(paint).collect();
+    let panels = panels?;
+    let rows = painted_rows(&panels, side);
+    let size = [2 * MARGIN + columns * (side + GAP) - GAP.min(columns * GAP), 2 * MARGIN + TITLE + LINE + rows.len()];
+    let mut picture = Picture::filled(size, PAPER)?;
     let left = |column: usize| MARGIN + column * (side + GAP);
-    for (column, panel) in panels?.iter().enumerate() {
-        picture.paste(panel, [left(column), MARGIN + TITLE + LINE]);
+    for (column, panel) in panels.iter().enumerate() {
+        picture.paste(&panel.rows(rows.clone())?, [left(column), MARGIN + TITLE + LINE]);
     }
     let labels = Labels::on(&mut picture)?;
     labels.text(&options.title, [MARGIN, MARGIN], 17, Anchor::Left, FontStyle::Bold)?;
@@ -104,6 +106,17 @@ pub fn model_sheet(
     }
     labels.finish()?;
     Ok(picture)
+}
+
+/// The rows of square panels from the first to the last one that is not empty in one of them, and a little more.
+fn painted_rows(panels: &[Picture], side: usize) -> Range<usize> {
+    let is_painted = |row: &usize| {
+        panels.iter().any(|panel| panel.pixels()[row * side..][..side].iter().any(|pixel| *pixel != PAPER))
+    };
+    match ((0..side).find(is_painted), (0..side).rfind(is_painted)) {
+        (Some(first), Some(last)) => first.saturating_sub(GAP)..(last + 1 + GAP).min(side),
+        _ => 0..side,
+    }
 }
 
 impl ModelSheetOptions {

@@ -14,7 +14,7 @@ use texbake::{BakeOptions, Baker, Convention, Depth, Encoding, Grid, HeightMap, 
 
 /// Square maps have so many texels on a side.
 const SIDE: usize = 64;
-const SCALE: u32 = 8;
+const SCALE: i32 = 8;
 
 /// 16-bit heights of (x, y) in [0, 1], at the centres of texels.
 fn heights(height: impl Fn(f64, f64) -> f64) -> HeightMap {

@@ -103,6 +103,10 @@ pub struct PreviewArguments {
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(64..=1024), help_heading = PICTURE)]
     pub panel: Option<u32>,
 
+    /// At most N colours, from 2 to 256, for a file of a third of the bytes or less [default: all]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=256), help_heading = PICTURE)]
+    pub colors: Option<u16>,
+
     #[command(flatten)]
     pub settings: Settings,
 
@@ -152,7 +156,10 @@ fn shown(arguments: &PreviewArguments, monitor: &Monitor) -> Result<Exit, Failur
     if monitor.is_cancelled() {
         return Err(Error::Cancelled.into());
     }
-    picture.write(&arguments.output)?;
+    match arguments.colors {
+        Some(colors) => picture.write_in_colours(&arguments.output, colors.into())?,
+        None => picture.write(&arguments.output)?,
+    }
     if !arguments.quiet {
         if !shown.has_heights && told.is_some() {
             say("without heights there is no truth to compare with: give the height map as INPUT for the errors");
