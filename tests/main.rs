@@ -14,6 +14,8 @@ mod measure;
 mod normal;
 mod oracle;
 mod parallax;
+#[cfg(feature = "cli")]
+mod preview;
 mod properties;
 mod sabotage;
 mod shading;

@@ -91,7 +91,7 @@ impl Search {
     }
 
     /// The file `path` below `root`, if its name says that it is a height map.
-    fn height_map(&self, root: &Path, path: &Path) -> Option<Found> {
+    pub fn height_map(&self, root: &Path, path: &Path) -> Option<Found> {
         let extension = path.extension()?;
         if !INPUT_EXTENSIONS.iter().any(|known| extension.eq_ignore_ascii_case(known)) {
             return None;

@@ -1,8 +1,12 @@
 //! Pixels, and the file that they become.
 
+use super::palette::divided;
 use crate::error::{Error, Result};
 use crate::io::create_normals;
+use crate::io::replace::Replacement;
 use crate::map::{CodesRef, NormalFormat, Size};
+use std::io::BufWriter;
+use std::ops::Range;
 use std::path::Path;
 
 /// Rows of 8-bit sRGB pixels.
@@ -76,6 +80,16 @@ impl Picture {
         }
     }
 
+    /// Some of its rows.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there are none.
+    pub fn rows(&self, rows: Range<usize>) -> Result<Self> {
+        let (width, last) = (self.size.width(), rows.end.min(self.size.height()));
+        let size = Size::new(width, last.saturating_sub(rows.start))?;
+        Ok(Self { size, pixels: self.pixels[rows.start * width..last * width].to_vec() })
+    }
+
     /// Fails if a picture cannot be called `path`: it becomes a PNG.
     ///
     /// # Errors
@@ -97,6 +111,34 @@ impl Picture {
         let mut file = create_normals(path.as_ref(), self.size, NormalFormat::default())?;
         file.write(0, CodesRef::U8(self.pixels.as_flattened()))?;
         file.finish()
+    }
+}
+
+impl Picture {
+    /// Writes it as [`Picture::write`] does, with at most `count` colours, from 1 to 256: a third of the bytes or less.
+    ///
+    /// # Errors
+    /// As [`Picture::write`].
+    pub fn write_in_colours(&self, path: impl AsRef<Path>, count: usize) -> Result<()> {
+        let path = path.as_ref();
+        Self::check_output(path)?;
+        let (palette, index) = divided(&self.pixels, count);
+        let indices: Vec<u8> = self.pixels.iter().map(|pixel| index[pixel]).collect();
+        let file = Replacement::create(path)?;
+        let [width, height] = [self.size.width(), self.size.height()].map(|side| side as u32);
+        let mut encoder = png::Encoder::new(BufWriter::new(file.output()?), width, height);
+        encoder.set_color(png::ColorType::Indexed);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_palette(palette.as_flattened());
+        encoder.set_compression(png::Compression::High);
+        // Indices near each other are no colours near each other.
+        encoder.set_filter(png::Filter::NoFilter);
+        let encoded = encoder.write_header().and_then(|mut writer| {
+            writer.write_image_data(&indices)?;
+            writer.finish()
+        });
+        encoded.map_err(|error| Error::io(path)(error.into()))?;
+        file.commit()
     }
 }
 

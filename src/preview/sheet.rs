@@ -53,8 +53,8 @@ impl SheetOptions {
     }
 
     fn white(&self, material: &Material, elevation: f32) -> f32 {
-        // From straight above there is none; then it is how far the highest is above the plane.
-        let longest = highest(material) / 2.0 / elevation.to_radians().tan().min(1.0);
+        // From straight above there is none.
+        let longest = highest(material) / 2.0 / elevation.to_radians().tan().min(4.0);
         // Of a map without relief every scale paints black.
         self.white.unwrap_or(if longest > 0.0 { longest } else { 1.0 })
     }

@@ -1,8 +1,8 @@
 //! From accessors to meshes.
 
-use super::document::Document;
+use super::document::{Document, index};
 use super::elements::Elements;
-use super::select::{Geometry, Mode};
+use super::select::{Geometry, Mode, Place};
 use crate::error::Result;
 use crate::mesh::Mesh;
 
@@ -19,6 +19,17 @@ impl Geometry {
         match self.normal {
             Some(normal) => mesh.with_normals(floats(document, "NORMAL", normal)?),
             None => Ok(mesh),
+        }
+    }
+
+    /// The tangents of a primitive that has some.
+    pub fn tangents(&self, document: &Document, (mesh, number): Place) -> Result<Vec<[f32; 4]>> {
+        let attributes = &document.list("meshes")[mesh]["primitives"][number]["attributes"];
+        let accessor = index(attributes, "TANGENT").ok_or_else(|| document.damaged("it has no TANGENT"))?;
+        let (tangents, vertices) = (floats(document, "TANGENT", accessor)?, Elements::count(document, self.position)?);
+        match tangents.len() == vertices {
+            true => Ok(tangents),
+            false => Err(document.damaged(format!("it has {} tangents for {vertices} vertices", tangents.len()))),
         }
     }
 

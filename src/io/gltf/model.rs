@@ -185,6 +185,18 @@ impl Model {
         geometry.mesh(&self.document).map_err(|error| named(&self.document, places[0], error))
     }
 
+    /// The tangents that the file has for a primitive, one for each vertex of [`Model::mesh`], with the sign in w.
+    ///
+    /// # Errors
+    /// As [`Model::mesh`].
+    pub fn tangents(&self, primitive: usize) -> Result<Option<Vec<[f32; 4]>>> {
+        let (geometry, places) = self.geometry(primitive)?;
+        let place = places.iter().copied().find(|place| has_tangents(&self.document, *place));
+        let read =
+            |place| geometry.tangents(&self.document, place).map_err(|error| named(&self.document, place, error));
+        place.map(read).transpose()
+    }
+
     /// Gives a primitive, and those that are the same, the tangents that its mesh has got; they are put into the file
     /// by [`Model::write`].
     ///
