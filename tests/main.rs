@@ -13,6 +13,8 @@ mod materials;
 mod normal;
 mod oracle;
 mod parallax;
+#[cfg(feature = "cli")]
+mod plan;
 mod properties;
 mod sabotage;
 mod shading;
