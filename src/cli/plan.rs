@@ -27,7 +27,9 @@ go wrong:
 
   [tolerance]
   normal = 1.0                # largest error of a normal in degrees
-  parallax = 1.0              # largest error of an offset in pixels
+  parallax = 1.0              # largest error of an offset in pixels; or
+                              # parallax-99, in 99 of 100 pixels: silhouettes,
+                              # which only relief gets right, aside
   bytes-per-texel = 4         # of all maps, if bounded, over texels of the file
   milliseconds = 2            # of parallax for a full screen, if bounded
 

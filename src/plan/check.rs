@@ -2,15 +2,15 @@
 
 use super::decision::{degrees, pixels, short};
 use super::method::method;
-use super::parallax::{material, views};
+use super::parallax::{largest_offset, material, views};
 use super::prediction::{MapPrediction, NormalPrediction, Prediction};
 use super::scene::Facts;
 use super::visible::VisibleNormals;
 use crate::error::{Error, Result};
 use crate::io::{NormalReadOptions, ReadOptions};
 use crate::map::{
-    Channels, CodeMap, Codes, CodesRef, Depth, Encoding, HeightMap, Heights, Maps, NormalMap, ParallaxFormat,
-    ParallaxMap, Size,
+    Channels, CodeMap, Codes, CodesRef, Depth, Encoding, HeightMap, Heights, Maps, NormalFormat, NormalMap,
+    ParallaxFormat, ParallaxMap, Size,
 };
 use crate::material::{ParallaxMethod, Texture};
 use std::path::{Path, PathBuf};
@@ -63,7 +63,16 @@ impl Checking<'_> {
     /// Checks the normal map, or that there is none, and returns what was read.
     fn normals(&mut self, path: Option<&Path>) -> Result<Option<NormalMap>> {
         let NormalPrediction { map, degrees: predicted, tolerance } = &self.prediction.normal;
-        let Some((path, map)) = self.is_there("normal", path, map.as_ref()) else { return Ok(None) };
+        let most = self.prediction.most(*predicted, *tolerance);
+        let visible = VisibleNormals::new(self.heights, &self.facts.bake(), self.prediction.shrink)?;
+        let Some((path, map)) = self.is_there("normal", path, map.as_ref()) else {
+            if map.is_none() {
+                let largest = visible.leanings().largest;
+                let what = format!("{}: without a normal map, normals are off by", self.prediction.file);
+                self.compare(&what, "at most", largest, most, [largest, *predicted].map(degrees));
+            }
+            return Ok(None);
+        };
         let format = map.normals(self.facts.convention)?;
         let read = NormalReadOptions {
             encoding: Some(format.encoding),
@@ -71,9 +80,8 @@ impl Checking<'_> {
             convention: format.convention,
             ..NormalReadOptions::default()
         };
-        let baked = match NormalMap::read_with(path, &read)
-            .and_then(|(baked, _)| Ok((found(path, &baked, format.depth)?, baked)))
-        {
+        let found = |(baked, _): (NormalMap, _)| Ok((found(path, &baked, format.depth)?, baked));
+        let baked = match NormalMap::read_with(path, &read).and_then(found) {
             Ok((found, baked)) if self.is_as_predicted(path, map, baked.size(), found) => baked,
             Ok(_) => return Ok(None),
             Err(error) => {
@@ -81,47 +89,61 @@ impl Checking<'_> {
                 return Ok(None);
             }
         };
-        let by = (self.heights.size().width() / baked.size().width()) as u32;
-        let visible = VisibleNormals::new(self.heights, &self.facts.bake(), by)?;
         if visible.size() != baked.size() {
-            self.broken.push(format!("{}: no whole factor reduces the height map to {}", path.display(), baked.size()));
+            let line =
+                format!("{}: it is {}, and the plan reduces it to {}", path.display(), baked.size(), visible.size());
+            self.broken.push(line);
             return Ok(None);
         }
         let largest = visible.errors(&Texture::of_normals(&baked, self.facts.edges)).largest;
-        let (most, numbers) = (self.prediction.most(*predicted, *tolerance), [largest, *predicted].map(degrees));
-        self.compare(path, "normals are off by", largest, most, numbers);
+        let what = format!("{}: normals are off by", path.display());
+        self.compare(&what, "at most", largest, most, [largest, *predicted].map(degrees));
         Ok(Some(baked))
     }
 
-    /// Checks the parallax map, or that there is none.
+    /// Checks the parallax map, or that there is none, and what the shader makes of it or of the height map.
     fn parallax(&mut self, path: Option<&Path>, normals: Option<NormalMap>) -> Result<()> {
         let predicted = &self.prediction.parallax;
-        let Some((path, map)) = self.is_there("parallax", path, predicted.map.as_ref()) else { return Ok(()) };
-        let format = map.parallax()?;
-        let baked = match read_parallax(path, format) {
-            Ok((baked, depth)) if self.is_as_predicted(path, map, baked.size(), (depth, None)) => baked,
-            Ok(_) => return Ok(()),
-            Err(error) => {
-                self.broken.push(error.to_string());
-                return Ok(());
-            }
+        let there = self.is_there("parallax", path, predicted.map.as_ref());
+        let method = method(&predicted.method)?;
+        let baked = match (there, &predicted.map) {
+            (Some((path, map)), _) => match read_parallax(path, map.parallax()?) {
+                Ok((baked, depth)) if self.is_as_predicted(path, map, baked.size(), (depth, None)) => baked,
+                Ok(_) => return Ok(()),
+                Err(error) => {
+                    self.broken.push(error.to_string());
+                    return Ok(());
+                }
+            },
+            (None, Some(_)) => return Ok(()),
+            (None, None) => ParallaxMap::new(Size::new(1, 1)?, ParallaxFormat::default(), Codes::U8(vec![0]))?,
         };
-        let flat = flat_normals(baked.size())?;
-        let options = self.facts.bake();
-        let material = material(self.heights, normals.as_ref().unwrap_or(&flat), &baked, &options)?;
-        let (views, truth) = views(&material, self.prediction.seen.angle);
-        let method: ParallaxMethod = method(&predicted.method)?;
-        let texels = views.errors(&material, method, &truth).largest;
-        let largest = texels * self.prediction.seen.pixels_per_texel;
+        let name = path.filter(|_| predicted.map.is_some()).map(|path| path.display().to_string());
+        let name = name.unwrap_or_else(|| self.prediction.file.clone());
+        let (seen, options) = (self.prediction.seen, self.facts.bake());
         let most = self.prediction.most(predicted.pixels, predicted.tolerance);
-        let numbers = [largest, predicted.pixels].map(pixels);
-        self.compare(path, &format!("offsets of {} are off by", predicted.method), largest, most, numbers);
+        if method == ParallaxMethod::None {
+            let largest = largest_offset(self.heights, &options, seen)?;
+            let numbers = [largest, predicted.pixels].map(pixels);
+            self.compare(&format!("{name}: without parallax, offsets are"), "at most", largest, most, numbers);
+            return Ok(());
+        }
+        let normals = match normals {
+            Some(normals) => normals,
+            // A method that looks at normals has had its map checked.
+            None => NormalMap::new(Size::new(1, 1)?, NormalFormat::default(), Codes::U8(vec![128, 128, 255]))?,
+        };
+        let material = material(self.heights, &normals, &baked, &options)?;
+        let (views, truth) = views(&material, seen.angle);
+        let error = predicted.of.errors(views.errors(&material, method, &truth)) * seen.pixels_per_texel;
+        let what = format!("{name}: offsets by {} are off by", predicted.method);
+        self.compare(&what, predicted.of.words(), error, most, [error, predicted.pixels].map(pixels));
         Ok(())
     }
 
-    fn compare(&mut self, path: &Path, what: &str, largest: f64, most: f64, [measured, predicted]: [String; 2]) {
-        let line = format!("{}: {what} {measured} at most, {predicted} predicted", path.display());
-        if largest <= most { self.measured.push(line) } else { self.broken.push(line) }
+    fn compare(&mut self, what: &str, words: &str, error: f64, most: f64, [measured, predicted]: [String; 2]) {
+        let line = format!("{what} {measured} {words}, {predicted} predicted");
+        if error <= most { self.measured.push(line) } else { self.broken.push(line) }
     }
 
     /// The map's path and prediction, if there is a map that was predicted.
@@ -227,9 +249,4 @@ fn read_parallax(path: &Path, format: ParallaxFormat) -> Result<(ParallaxMap, De
         Error::file(path, format!("it holds no {} {} codes: {error}", format.encoding, format.depth), "bake it again")
     })?;
     Ok((map, depth))
-}
-
-/// A normal map that shows nothing, for methods that do not look at one.
-fn flat_normals(size: Size) -> Result<NormalMap> {
-    NormalMap::new(size, crate::map::NormalFormat::default(), Codes::U8([128, 128, 255].repeat(size.texels())))
 }

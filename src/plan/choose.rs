@@ -1,6 +1,6 @@
 //! The cheapest maps of one height map that keep within the tolerances.
 
-use super::decision::{Decision, Rejected, degrees, short};
+use super::decision::{Decision, Rejected, bytes_a_texel, degrees, short};
 use super::normals::{self, NoNormals, NormalChoice};
 use super::parallax::{self, ParallaxChoice};
 use super::subject::{Reduced, Subject};
@@ -61,8 +61,7 @@ impl Chosen {
 /// Every resolution is tried, coarsest first, until a finer one can be no cheaper.
 pub(super) fn choose(subject: &Subject<'_>) -> Result<Result<Chosen, Unmet>> {
     let factors = subject.factors();
-    let coarsest = subject.reduced(factors[0])?;
-    let offset = parallax::largest_offset(subject, &coarsest)?;
+    let offset = parallax::largest_offset(&subject.heights, &subject.facts().bake(), subject.seen)?;
     let mut rejected = Vec::new();
     let mut best: Option<Candidate> = None;
     let mut unmet = None;
@@ -178,7 +177,7 @@ fn maps_decision(
         (None, 0) => "no offset is seen".to_owned(),
         (None, _) => format!("{} reads the height map as it is", parallax.method),
     });
-    let mut reason = format!("{}; {} bytes in all for each texel of the height map", reasons.join(", "), short(bytes));
+    let mut reason = format!("{}; in all {} of the height map", reasons.join(", "), bytes_a_texel(bytes));
     if let Some(bound) = subject.tolerance().bytes_per_texel {
         reason += &format!(", of {} allowed", short(bound));
     }

@@ -68,6 +68,31 @@ fn counted(number: f64, unit: &str) -> String {
     format!("{text} {unit}{plural}")
 }
 
+/// Columns of a line.
+const COLUMNS: usize = 100;
+
+/// Lines of text, of which the first and the others begin differently.
+pub(super) fn wrapped(text: &str, [first, other]: [&str; 2]) -> String {
+    let mut lines = vec![String::from(first)];
+    for word in text.split(' ') {
+        let line = lines.last_mut().unwrap_or_else(|| unreachable!("there is the first line"));
+        let begins = line == first || line == other;
+        if begins {
+            *line += word;
+        } else if line.chars().count() + 1 + word.chars().count() <= COLUMNS {
+            *line += &format!(" {word}");
+        } else {
+            lines.push(format!("{other}{word}"));
+        }
+    }
+    lines.iter().map(|line| format!("{line}\n")).collect()
+}
+
+/// `1 byte a texel`, `2 bytes a texel`.
+pub(super) fn bytes_a_texel(bytes: f64) -> String {
+    format!("{} a texel", counted(bytes, "byte"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

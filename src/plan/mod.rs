@@ -40,7 +40,9 @@ mod visible;
 pub use check::Checked;
 pub use decision::{Decision, Rejected};
 pub use plan::{FilePlan, Plan};
-pub use prediction::{MapPrediction, MaterialFacts, NormalPrediction, ParallaxPrediction, Prediction, predictions};
+pub use prediction::{
+    ErrorOf, MapPrediction, MaterialFacts, NormalPrediction, ParallaxPrediction, Prediction, predictions,
+};
 pub use scene::{Scene, Tolerance};
 pub use settings::check_place;
 pub use view::{Seen, Sight, View};

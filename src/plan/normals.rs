@@ -1,6 +1,6 @@
 //! Which normal map.
 
-use super::decision::{Decision, Rejected, degrees, short};
+use super::decision::{Decision, Rejected, bytes_a_texel, degrees, short};
 use super::subject::{Reduced, Subject};
 use super::unmet::Unmet;
 use crate::baker::Baker;
@@ -61,8 +61,12 @@ pub(super) fn choose(subject: &Subject<'_>, reduced: &Reduced<'_>) -> Result<Res
         subject.monitor.check()?;
         let Errors { largest, percentile_99, mean } = measure(subject.baker, reduced, format, Precision::Exact)?;
         if largest <= tolerance {
+            let in_file = match (subject.material.format.as_str(), format.channels) {
+                ("png", Channels::Xy) => "; the PNG has a third channel of zeros, which a texture need not have",
+                _ => "",
+            };
             let reason = format!(
-                "off by {} at most, of {} allowed; by {} in 99 of 100 texels, {} in the mean",
+                "off by {} at most, of {} allowed; by {} in 99 of 100 texels, {} in the mean{in_file}",
                 degrees(largest),
                 short(tolerance),
                 short(percentile_99),
@@ -118,5 +122,5 @@ impl NoNormals {
 /// `unorm 8 xy, 2 bytes a texel`.
 pub(super) fn describe(format: NormalFormat) -> String {
     let NormalFormat { encoding, depth, channels, .. } = format;
-    format!("{encoding} {depth} {channels}, {} bytes a texel", format.texel().bytes())
+    format!("{encoding} {depth} {channels}, {}", bytes_a_texel(format.texel().bytes() as f64))
 }

@@ -1,9 +1,10 @@
 //! Which parallax method at run time, and which map for it.
 
-use super::decision::{Decision, Rejected, pixels, short};
+use super::decision::{Decision, Rejected, bytes_a_texel, pixels, short};
 use super::method::reads;
 use super::subject::{Reduced, Subject};
 use super::unmet::Unmet;
+use super::view::Seen;
 use crate::baker::Baker;
 use crate::error::Result;
 use crate::io::check_parallax_format;
@@ -54,15 +55,14 @@ pub(super) fn formats(extension: &str) -> Vec<ParallaxFormat> {
 
 /// The largest offset that can be seen at the shallowest angle a, in pixels: |2h - 1| s/2 cot a texels of the greatest
 /// |2h - 1|, the offset of relief as high as it gets.
-pub(super) fn largest_offset(subject: &Subject<'_>, reduced: &Reduced<'_>) -> Result<f64> {
-    let scale = subject.facts().scale.resolve(subject.heights.size())?;
+pub(super) fn largest_offset(heights: &HeightMap, options: &BakeOptions, seen: Seen) -> Result<f64> {
+    let scale = options.scale.resolve(heights.size())?;
     let texels = f64::from(scale.x.abs().max(scale.y.abs())) / f64::from(scale.q);
-    let heights = Texture::of_heights(&reduced.heights, reduced.options.edges);
+    let heights = Texture::of_heights(heights, options.edges);
     let highest = heights.texels().iter().map(|[h]| f64::from(2.0 * h - 1.0).abs()).fold(0.0, f64::max);
-    let angle = subject.seen.angle.to_radians();
     // Straight from above the tangent is no exact infinity.
-    let cotangent = if subject.seen.angle == 90.0 { 0.0 } else { 1.0 / angle.tan() };
-    Ok(highest * texels / 2.0 * cotangent * subject.seen.pixels_per_texel)
+    let cotangent = if seen.angle == 90.0 { 0.0 } else { 1.0 / seen.angle.to_radians().tan() };
+    Ok(highest * texels / 2.0 * cotangent * seen.pixels_per_texel)
 }
 
 /// No parallax, which is right where nothing moves by more than the tolerance.
@@ -145,7 +145,9 @@ impl<'a> Search<'a> {
         }
         methods.extend((1..=MOST_STEPS).map(ParallaxMethod::steps));
         let angle = self.subject.seen.angle.to_radians();
-        let truth = self.finest.truth([angle.cos() as f32, 0.0, angle.sin() as f32]);
+        let (across, up) = (angle.cos() as f32, angle.sin() as f32);
+        let along = [[across, 0.0, up], [0.0, across, up]].map(|eye| self.finest.truth(eye));
+        let truth = if along[0].fetches() > along[1].fetches() { along[0] } else { along[1] };
         let most = truth.fetches();
         let halvings = (2..).map(|power| 1u32 << power).take_while(|steps| *steps < most);
         methods.extend(halvings.map(|steps| ParallaxMethod::Relief { steps, bisections: BISECTIONS }));
@@ -168,7 +170,8 @@ impl<'a> Search<'a> {
     }
 
     fn error(&self, material: &Material, method: ParallaxMethod) -> f64 {
-        self.views.errors(material, method, &self.truth).largest * self.subject.seen.pixels_per_texel
+        let errors = self.views.errors(material, method, &self.truth);
+        self.subject.tolerance().parallax_of.errors(errors) * self.subject.seen.pixels_per_texel
     }
 
     /// The choice of this method, if it keeps within the tolerances.
@@ -219,8 +222,9 @@ impl<'a> Search<'a> {
     ) -> ParallaxChoice {
         let tolerance = self.subject.tolerance();
         let mut reason = format!(
-            "off by {} at most, of {} allowed, in {PIXELS} pixels seen at {} degrees; {} lookups of {}",
+            "off by {} {}, of {} allowed, in {PIXELS} pixels seen at {} degrees; {} lookups of {}",
             pixels(error),
+            tolerance.parallax_of.words(),
             short(tolerance.parallax),
             short(self.subject.seen.angle),
             method.fetches(),
@@ -238,11 +242,12 @@ impl<'a> Search<'a> {
         let mut decisions = vec![Decision::new("parallax", method, reason).without(rejected)];
         decisions.push(match format {
             Some(format) => {
-                let reason = format!("off by {} at most, of {} allowed", pixels(error), short(tolerance.parallax));
+                let (words, allowed) = (tolerance.parallax_of.words(), short(tolerance.parallax));
+                let reason = format!("off by {} {words}, of {allowed} allowed", pixels(error));
                 Decision::new("parallax map", describe(format), reason).without(coarser)
             }
             None => {
-                let reason = format!("{method} reads {}, {} bytes a texel", reads(method), short(bytes));
+                let reason = format!("{method} reads {}, {}", reads(method), bytes_a_texel(bytes));
                 Decision::new("parallax map", "none", reason)
             }
         });
@@ -334,6 +339,5 @@ pub(super) fn bake(
 
 /// `biased 8, 1 byte a texel`.
 pub(super) fn describe(format: ParallaxFormat) -> String {
-    let bytes = format.depth.bytes();
-    format!("{} {}, {bytes} {} a texel", format.encoding, format.depth, if bytes == 1 { "byte" } else { "bytes" })
+    format!("{} {}, {}", format.encoding, format.depth, bytes_a_texel(format.depth.bytes() as f64))
 }

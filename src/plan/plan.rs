@@ -1,7 +1,7 @@
 //! A plan: what is chosen for each height map of a scene, and what is said of it.
 
 use super::choose::{Chosen, choose};
-use super::decision::{Decision, short};
+use super::decision::{Decision, degrees, pixels, short, wrapped};
 use super::normals::NormalChoice;
 use super::parallax::ParallaxChoice;
 use super::prediction::{MapPrediction, MaterialFacts, NormalPrediction, ParallaxPrediction, Prediction};
@@ -82,20 +82,19 @@ impl FilePlan {
     pub fn explanation(&self) -> String {
         let Prediction { seen, normal, parallax, .. } = &self.prediction;
         let mut text = format!(
-            "{}: {}, {}; {} texels a pixel at the nearest view, {} degrees at the shallowest; tolerances {} degrees, {} \
-             pixels\n",
+            "{}: {}, {}; {} texels a pixel at the nearest view, {} at the shallowest; tolerances {}, {}\n",
             self.file.display(),
             self.size,
             self.height_type,
             short(1.0 / seen.pixels_per_texel),
-            short(seen.angle),
-            short(normal.tolerance),
-            short(parallax.tolerance),
+            degrees(seen.angle),
+            degrees(normal.tolerance),
+            pixels(parallax.tolerance),
         );
         for Decision { topic, choice, reason, rejected } in &self.decisions {
-            text += &format!("  {topic}: {choice}\n      {reason}\n");
+            text += &format!("  {topic}: {choice}\n{}", wrapped(reason, ["      "; 2]));
             for rejected in rejected {
-                text += &format!("      not {}: {}\n", rejected.what, rejected.why);
+                text += &wrapped(&format!("not {}: {}", rejected.what, rejected.why), ["      ", "        "]);
             }
         }
         text
@@ -152,10 +151,12 @@ fn prediction(file: &Path, subject: &Subject<'_>, chosen: &Chosen) -> Prediction
     let parallax_map =
         format.map(|format| map(format.encoding.to_string(), format.depth.to_string(), None, format.depth.bytes()));
     let (method, pixels) = (method.to_string(), *error);
-    let parallax = ParallaxPrediction { method, pixels, tolerance: tolerance.parallax, map: parallax_map };
+    let (tolerance, of) = (tolerance.parallax, tolerance.parallax_of);
+    let parallax = ParallaxPrediction { method, pixels, of, tolerance, map: parallax_map };
     Prediction {
         file: slashed(file),
         maps: chosen.maps().into(),
+        shrink: *shrink,
         precision: precision.to_string(),
         tangent_space: tangent_space.clone(),
         material: MaterialFacts::new(subject.facts()),

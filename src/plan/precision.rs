@@ -82,6 +82,6 @@ fn measure(
     let shown = normals::bake(subject.baker, reduced, shown, fast)?;
     let material = parallax::material(&subject.heights, &shown, &map, &subject.facts().bake())?;
     let (views, truth) = parallax::views(&material, subject.seen.angle);
-    let texels = views.errors(&material, parallax.method, &truth).largest;
+    let texels = subject.tolerance().parallax_of.errors(views.errors(&material, parallax.method, &truth));
     Ok(Measured { normal, parallax: texels * subject.seen.pixels_per_texel })
 }

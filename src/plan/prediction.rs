@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::exact::{Rational, Scale};
 use crate::io::{Channel, ReadOptions};
 use crate::map::{Channels, Convention, Depth, Encoding, NormalFormat, ParallaxFormat};
+use crate::measure::Errors;
 use serde::{Deserialize, Serialize, Serializer};
 use std::path::Path;
 
@@ -20,6 +21,8 @@ pub struct Prediction {
     pub file: String,
     /// `normal`, `parallax`, `normal,parallax` or `none`.
     pub maps: String,
+    /// By which factor the height map is reduced.
+    pub shrink: u32,
     /// `exact` or `fast`.
     pub precision: String,
     /// `tangents`, `cotangent frame` or `none`: how a shader comes to tangent space.
@@ -62,7 +65,7 @@ pub struct NormalPrediction {
     pub tolerance: f64,
 }
 
-/// How far the offsets that a scene shows may be from relief intersection.
+/// How far the offsets that a scene shows may be from relief intersection; without parallax, the largest that there is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ParallaxPrediction {
@@ -70,11 +73,41 @@ pub struct ParallaxPrediction {
     pub map: Option<MapPrediction>,
     /// What the shader does: `none`, `limited`, `steps 4`, `relief 64+5`.
     pub method: String,
-    /// The largest error in pixels, as it was measured.
+    /// The error in pixels, as it was measured.
     #[serde(serialize_with = "above_zero")]
     pub pixels: f64,
+    /// Of which pixels it is.
+    pub of: ErrorOf,
     /// What the scene allows.
     pub tolerance: f64,
+}
+
+/// Which of many errors counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ErrorOf {
+    /// The largest.
+    All,
+    /// What 99 of 100 do not exceed.
+    #[serde(rename = "99 of 100")]
+    Most,
+}
+
+impl ErrorOf {
+    pub(super) fn errors(self, errors: Errors) -> f64 {
+        match self {
+            Self::All => errors.largest,
+            Self::Most => errors.percentile_99,
+        }
+    }
+
+    /// After "off by so much".
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Self::All => "at most",
+            Self::Most => "at most in 99 of 100",
+        }
+    }
 }
 
 /// A map file.

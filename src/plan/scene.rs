@@ -1,5 +1,6 @@
 //! A scene: which materials it has, how they are seen, and what may go wrong.
 
+use super::prediction::ErrorOf;
 use super::text::{Text, document};
 use super::view::{Sight, View, ViewText};
 use crate::batch::{Found, OUTPUT_EXTENSIONS, Search};
@@ -55,8 +56,10 @@ pub(super) struct Facts {
 pub struct Tolerance {
     /// The largest error of a normal in degrees.
     pub normal: f64,
-    /// The largest error of a parallax offset in pixels.
+    /// The error of a parallax offset in pixels.
     pub parallax: f64,
+    /// Of which pixels.
+    pub parallax_of: ErrorOf,
     /// The most bytes that the maps of a height map may have, over its texels.
     pub bytes_per_texel: Option<f64>,
     /// The most milliseconds that parallax mapping may take for a screen full of the material.
@@ -88,6 +91,8 @@ enum OneOrMany {
 struct ToleranceText {
     normal: Option<Spanned<f64>>,
     parallax: Option<Spanned<f64>>,
+    #[serde(rename = "parallax-99")]
+    parallax_99: Option<Spanned<f64>>,
     bytes_per_texel: Option<Spanned<f64>>,
     milliseconds: Option<Spanned<f64>>,
 }
@@ -303,9 +308,19 @@ impl Reader<'_> {
                 self.error(start, format!("the tolerance {name} is missing"), remedy)
             })
         };
+        // A tolerance of a material takes the place of the scene's, whichever pixels either is for.
+        let own_parallax = own.parallax.is_some() || own.parallax_99.is_some();
+        let parallax_text = if own_parallax { own } else { general };
+        if let (Some(_), Some(most)) = (&parallax_text.parallax, &parallax_text.parallax_99) {
+            let reason = "both parallax and parallax-99 are given";
+            return Err(self.error(most.span().start, reason, "give one: of all pixels, or of 99 of 100"));
+        }
+        let of_all = bound("parallax", &parallax_text.parallax, &None)?;
+        let of_most = bound("parallax-99", &parallax_text.parallax_99, &None)?;
         Ok(Tolerance {
             normal: needed("normal", "1.0 (degrees)", bound("normal", &own.normal, &general.normal)?)?,
-            parallax: needed("parallax", "1.0 (pixels)", bound("parallax", &own.parallax, &general.parallax)?)?,
+            parallax: needed("parallax", "1.0 (pixels)", of_all.or(of_most))?,
+            parallax_of: if of_most.is_some() { ErrorOf::Most } else { ErrorOf::All },
             bytes_per_texel: bound("bytes-per-texel", &own.bytes_per_texel, &general.bytes_per_texel)?,
             milliseconds: bound("milliseconds", &own.milliseconds, &general.milliseconds)?,
         })

@@ -1,6 +1,6 @@
 //! The settings file of a plan.
 
-use super::decision::Decision;
+use super::decision::{Decision, wrapped};
 use super::plan::{FilePlan, Plan, slashed};
 use super::prediction::Prediction;
 use crate::error::{Error, Result, plain};
@@ -87,14 +87,21 @@ impl FilePlan {
     fn override_text(&self) -> String {
         let mut text = String::from("\n");
         for Decision { topic, choice, reason, .. } in &self.decisions {
-            text += &format!("# {topic}: {}; {}\n", plain(choice), plain(reason));
+            text += &wrapped(&format!("{topic}: {}; {}", plain(choice), plain(reason)), ["# ", "#   "]);
         }
         text += &format!("[[override]]\nglob = {}\n", quoted(&globset::escape(&slashed(&self.file))));
         for (key, value) in &self.settings {
-            text += &format!("{key} = {}\n", quoted(value));
+            text += &format!("{key} = {}\n", if is_number(value) { value.clone() } else { quoted(value) });
         }
         text
     }
+}
+
+/// Whether it is a number to TOML as it is: `24`, `-0.35`.
+fn is_number(text: &str) -> bool {
+    let digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    let (whole, fraction) = text.trim_start_matches('-').split_once('.').unwrap_or((text.trim_start_matches('-'), "0"));
+    digits(whole) && digits(fraction) && text.parse::<f64>().is_ok() && (whole == "0" || !whole.starts_with('0'))
 }
 
 /// A TOML string.

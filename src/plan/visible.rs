@@ -1,6 +1,6 @@
 //! The normals that a map, reduced or not, stands for.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::inspect::angle::degrees;
 use crate::map::{HeightMap, Size};
 use crate::material::Texture;
@@ -25,6 +25,10 @@ impl<'a> VisibleNormals<'a> {
     /// As [`TrueNormals::new`].
     pub fn new(heights: &'a HeightMap, options: &BakeOptions, by: u32) -> Result<Self> {
         let (whole, by) = (heights.size(), by as usize);
+        if by == 0 || whole.width() % by != 0 || whole.height() % by != 0 {
+            let range = format!("a divisor of both sides of the map, which has {whole} texels");
+            return Err(Error::parameter("shrink", by, range));
+        }
         let size = Size::new(whole.width() / by, whole.height() / by)?;
         Ok(Self { whole: TrueNormals::new(heights, options)?, by, size })
     }

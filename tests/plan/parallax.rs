@@ -1,0 +1,107 @@
+//! Whether there is parallax, and by which method.
+
+use super::{decision, plan_error, plan_of_one, scene, setting, wave};
+use crate::cli::support::Folder;
+use texbake::plan::FilePlan;
+
+/// Black and white in blocks of 8 texels: heights from 0 to 1.
+fn blocks(folder: &Folder) {
+    folder.grey8("blocks_h.png", 64, 64, |x, y| if (x / 8 + y / 8) % 2 == 0 { 0 } else { 255 });
+}
+
+fn method(file: &FilePlan) -> &str {
+    &file.prediction.parallax.method
+}
+
+#[test]
+fn offsets_below_the_tolerance_are_not_worth_a_map() {
+    let folder = Folder::new();
+    blocks(&folder);
+    // s/2 cot 30 degrees = 2 * 1.7320508 = 3.4641016 texels.
+    let file = |tolerance: &str, texels_per_pixel: &str| {
+        let view = format!("scale = 4\nview = {{ angle = 30, texels-per-pixel = {texels_per_pixel} }}");
+        plan_of_one(&folder, &scene(&format!("normal = 60\nparallax = {tolerance}"), &view))
+    };
+    let offset = |file: &FilePlan| file.prediction.parallax.pixels;
+    for (tolerance, texels_per_pixel, pixels) in [("3.4642", "1", 3.464_101_6), ("0.34642", "10", 0.346_410_16)] {
+        let file = file(tolerance, texels_per_pixel);
+        assert_eq!((method(&file), decision(&file, "parallax").choice.as_str()), ("none", "none"));
+        assert!((offset(&file) - pixels).abs() < 1e-6, "{}", offset(&file));
+    }
+    for (tolerance, texels_per_pixel) in [("3.464", "1"), ("0.3464", "10")] {
+        let file = file(tolerance, texels_per_pixel);
+        assert_ne!(method(&file), "none");
+        assert!(offset(&file) <= tolerance.parse().unwrap());
+    }
+}
+
+#[test]
+fn straight_from_above_nothing_moves() {
+    let folder = Folder::new();
+    blocks(&folder);
+    let view = "scale = 40\nview = { angle = 90 }";
+    let file = plan_of_one(&folder, &scene("normal = 60\nparallax = 0.001", view));
+    assert_eq!((method(&file), file.prediction.parallax.pixels), ("none", 0.0));
+}
+
+#[test]
+fn steep_steps_take_relief_intersection_and_gentle_hills_a_few_lookups() {
+    let folder = Folder::new();
+    blocks(&folder);
+    let file = plan_of_one(&folder, &scene("normal = 60\nparallax = 0.5", "scale = 16"));
+    assert!(method(&file).starts_with("relief "), "{}", method(&file));
+    assert_eq!((setting(&file, "maps"), &file.prediction.parallax.map), (Some("normal"), &None));
+    let rejected: Vec<&str> = decision(&file, "parallax").rejected.iter().map(|it| it.what.as_str()).collect();
+    assert_eq!(rejected[..3], ["none", "limited", "welsh"], "{rejected:?}");
+    assert!(rejected.contains(&"steps 1 to steps 16"), "{rejected:?}");
+
+    let folder = Folder::new();
+    folder.grey16("wave_h.png", 64, 64, wave);
+    // Offsets reach 4 texels, the second order of a step is s/2 (2 pi / 64)^2 of its square: it takes steps.
+    let file = plan_of_one(&folder, &scene("normal = 1\nparallax = 1", "scale = 8"));
+    let steps: u32 =
+        method(&file).strip_prefix("steps ").unwrap_or_else(|| panic!("{}", method(&file))).parse().unwrap();
+    assert!((1..=16).contains(&steps), "{steps}");
+    assert_eq!(setting(&file, "maps"), Some("normal,parallax"));
+    assert!(file.prediction.parallax.pixels <= 1.0);
+    let map = file.prediction.parallax.map.as_ref().unwrap();
+    assert_eq!((map.texels, map.bytes), ([64, 64], 64 * 64 * map.bits.parse::<usize>().unwrap() / 8));
+}
+
+#[test]
+fn silhouettes_may_be_left_out_of_the_account() {
+    let folder = Folder::new();
+    folder.grey16("wave_h.png", 64, 64, wave);
+    let fetches = |tolerance: &str| {
+        let file = plan_of_one(&folder, &scene(&format!("normal = 1\n{tolerance}"), "scale = 12"));
+        let reason = &decision(&file, "parallax").reason;
+        let (before, _) = reason.split_once(" lookups").unwrap();
+        (reason.contains("in 99 of 100"), before.rsplit(' ').next().unwrap().parse::<u32>().unwrap())
+    };
+    let (all, most) = (fetches("parallax = 1"), fetches("parallax-99 = 1"));
+    assert_eq!((all.0, most.0), (false, true));
+    assert!(most.1 <= all.1, "{most:?} {all:?}");
+}
+
+#[test]
+fn bytes_and_milliseconds_bound_the_choice() {
+    let folder = Folder::new();
+    blocks(&folder);
+    let bounded = |bounds: &str| scene(&format!("normal = 1.5\nparallax = 0.5\n{bounds}"), "scale = 16");
+    // Two bytes of normals and one of heights.
+    let file = plan_of_one(&folder, &bounded("bytes-per-texel = 3"));
+    assert!(decision(&file, "maps").reason.ends_with("in all 3 bytes a texel of the height map, of 3 allowed"));
+    let error = plan_error(&folder, &bounded("bytes-per-texel = 2.5"));
+    let text =
+        "the tolerance bytes-per-texel of 2.5 bytes a texel cannot be met: the best is 3 bytes a texel, with relief";
+    assert!(error.contains(text), "{error}");
+
+    let screen = |bounds: &str| bounded(bounds).replace("[view]", "[view]\nresolution = [1920, 1080]");
+    let error = plan_error(&folder, &screen("milliseconds = 1e-9"));
+    assert!(
+        error.contains("the tolerance milliseconds of 0.000000001 milliseconds cannot be met: the best is "),
+        "{error}"
+    );
+    let file = plan_of_one(&folder, &screen("milliseconds = 1e9"));
+    assert!(decision(&file, "parallax").reason.contains(" ms on the CPU's threads here, of 1000000000 allowed"));
+}
