@@ -4,13 +4,14 @@
 //!     cargo run --release --example make_tangents_picture
 
 use std::f32::consts::TAU;
+use std::ops::Range;
 use texbake::material::{Material, ParallaxMethod};
 use texbake::preview::{Canvas, Look, Paint, Picture, Viewpoint, Worn};
 use texbake::{BakeOptions, Baker, HeightMap, Mesh, Result, Scale, TangentOptions};
 
 const SIDE: usize = 200;
-/// Rows above and below the ring that are left away.
-const MARGIN: usize = 21;
+/// The rows that the ring fills.
+const ROWS: Range<usize> = 30..186;
 const GAP: usize = 8;
 /// Each pixel is this many samples wide and high.
 const SAMPLES: usize = 3;
@@ -27,13 +28,12 @@ fn main() -> Result<()> {
 
     let (sin, cos) = 50f32.to_radians().sin_cos();
     let viewpoint = Viewpoint::around(mesh.positions(), [0.0, -sin, cos], [0.0, 1.0, 0.0]);
-    let height = SIDE - 2 * MARGIN;
-    let mut picture = Picture::filled([3 * (SIDE + GAP) - GAP, height], [255; 3])?;
+    let mut picture = Picture::filled([3 * (SIDE + GAP) - GAP, ROWS.len()], [255; 3])?;
     for (i, paint) in [Paint::Lit(ParallaxMethod::None), Paint::Tangents, Paint::Handedness].into_iter().enumerate() {
         let mut canvas = Canvas::new(SIDE * SAMPLES, viewpoint, [1.0; 3]);
         ring.paint(&mut canvas, &viewpoint, &bricks, &Look::default(), paint);
         let square = Picture::of_samples(canvas.colours(), SIDE * SAMPLES, SAMPLES)?;
-        picture.paste(&square.rows(MARGIN..SIDE - MARGIN)?, [i * (SIDE + GAP), 0]);
+        picture.paste(&square.rows(ROWS)?, [i * (SIDE + GAP), 0]);
     }
     picture.write_in_colours("docs/tangents.png", COLOURS)
 }

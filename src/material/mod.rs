@@ -12,7 +12,7 @@ pub use texture::Texture;
 use crate::baker::Baker;
 use crate::error::Result;
 use crate::exact::AxisScale;
-use crate::map::{Edges, HeightMap, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Size};
+use crate::map::{Edges, HeightMap, NormalMap, ParallaxMap, Size};
 use crate::ops::bake::BakeOptions;
 use crate::shading::{limited_offset, plane_offset, relief_offset, step_scale, stepped_offset, welsh_offset};
 use crate::vector::normalized;
@@ -46,8 +46,8 @@ impl Material {
     /// # Errors
     /// As [`Baker::bake`].
     pub fn bake(baker: &Baker, heights: &HeightMap, options: &BakeOptions) -> Result<Self> {
-        let normal = options.normal.unwrap_or_else(NormalFormat::default);
-        let parallax = options.parallax.unwrap_or_else(ParallaxFormat::default);
+        let normal = options.normal.unwrap_or_default();
+        let parallax = options.parallax.unwrap_or_default();
         let options = BakeOptions { normal: Some(normal), parallax: Some(parallax), ..*options };
         let maps = baker.bake(heights, &options)?;
         let (Some(normals), Some(parallax)) = (&maps.normal, &maps.parallax) else {

@@ -126,3 +126,62 @@ fn params(shot: &Shot<'_>, first_row: u32) -> Vec<u32> {
     words.extend([look.ambient, look.highlight, look.shininess, rays.proportion].map(f32::to_bits));
     words
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{Grid, HeightMap};
+    use crate::material::Material;
+    use crate::ops::bake::BakeOptions;
+    use crate::preview::{Camera, Look};
+    use crate::{Baker, Scale};
+    use naga::{ScalarKind, TypeInner};
+
+    /// The kinds of the words of the kernel's parameters, in their order; gaps between members are none.
+    fn kinds(module: &naga::Module) -> Vec<ScalarKind> {
+        let params = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some("Params")).unwrap().1;
+        let TypeInner::Struct { members, span } = &params.inner else { panic!("a struct") };
+        let mut kinds = Vec::new();
+        for member in members {
+            assert_eq!(member.offset as usize, 4 * kinds.len(), "{:?}", member.name);
+            let (count, kind) = match module.types[member.ty].inner {
+                TypeInner::Scalar(scalar) => (1, scalar.kind),
+                TypeInner::Vector { size, scalar } => (size as usize, scalar.kind),
+                ref other => panic!("{other:?}"),
+            };
+            kinds.resize(kinds.len() + count, kind);
+        }
+        assert_eq!(*span as usize, 4 * kinds.len());
+        kinds
+    }
+
+    /// Parameters are told apart by their values: floats are none that an integer of a picture is.
+    #[test]
+    fn the_kernels_parameters_are_the_hosts() {
+        let module = naga::front::wgsl::parse_str(WGSL).unwrap();
+        let mut validator =
+            naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
+        validator.validate(&module).unwrap();
+        assert!(!module.types.iter().any(|(_, ty)| matches!(ty.inner, TypeInner::Atomic(_))));
+        assert_eq!(
+            (&*module.entry_points[0].name, module.entry_points[0].workgroup_size),
+            ("preview", [GROUP, GROUP, 1])
+        );
+
+        let heights = HeightMap::from(Grid::from_fn(8, 8, |x, y| (x * y) as u8).unwrap());
+        let options = BakeOptions { scale: Scale::texels(3), ..Default::default() };
+        let material = Material::bake(&Baker::cpu(), &heights, &options).unwrap();
+        let camera = Camera { elevation: 30.0, width: 0.5 };
+        let surface = Surface::Mapped(ParallaxMethod::Plane { limit: 3.0 });
+        let shot = Shot { material: &material, surface, camera, look: Look::default(), count: [20, 10] };
+        let is_float = |word: &u32| *word == 0 || f32::from_bits(*word).is_normal();
+        for (i, (word, kind)) in params(&shot, 5).iter().zip(kinds(&module)).enumerate() {
+            let fits = match kind {
+                ScalarKind::Float => is_float(word),
+                _ => *word < 1 << 20,
+            };
+            assert!(fits, "word {i} is {word:#x}, a {kind:?}");
+        }
+        assert_eq!(params(&shot, 5).len(), kinds(&module).len());
+    }
+}

@@ -12,6 +12,7 @@ fn help_names_every_command_and_option() {
         "bake",
         "blend",
         "tangents",
+        "preview",
         "devices",
         "Exit status",
         "texbake bake textures --out baked",

@@ -142,6 +142,19 @@ fn an_interrupted_model_leaves_nothing() {
 }
 
 #[test]
+fn an_interrupted_picture_leaves_nothing() {
+    let folder = Folder::new();
+    folder.grey8("height.png", 64, 64, |x, y| (x * y) as u8);
+    // Relief so high that a ray takes sixty thousand steps.
+    let high = ["--scale", "60000", "--elevations", "5", "--panel", "64", "--backend", "cpu"];
+    let command = folder.command(&[&["preview", "height.png", "-o", "out/sheet.png"][..], &high].concat());
+    let run = Run::from(signalled(command, "-INT", listens)).ends(130);
+    assert!(run.stderr.contains("interrupted: "), "{}", run.stderr);
+    assert!(run.stderr.ends_with("out/sheet.png was not written\n"), "{}", run.stderr);
+    assert_eq!(folder.files("out"), [""; 0]);
+}
+
+#[test]
 fn an_interrupted_model_leaves_the_old_one_with_its_buffer() {
     let folder = Folder::new();
     folder.file("small.glb", Model::new().with("sheet", &sheet(3, 3), 0).glb());

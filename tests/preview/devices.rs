@@ -89,7 +89,7 @@ fn a_wrong_kernel_is_seen() {
     assert!(name.is_some() || std::env::var_os("TEXBAKE_REQUIRE_GPU").is_none(), "no device");
     let Some(name) = name else { return eprintln!("skipped: no device") };
     for (surface, from, to) in [
-        (Surface::Flat, "let l = params.light.xyz", "let l = params.light.yxz"),
+        (Surface::Flat, "let l = params.light.xyz", "let l = params.light.xzy"),
         (Surface::Flat, "place.y * params.down.xyz", "-place.y * params.down.xyz"),
         (Surface::Flat, "met.y / params.proportion", "met.y / 1.01"),
         (Surface::Mapped(ParallaxMethod::None), "vec3<f32>(x, y, z)", "vec3<f32>(x, -y, z)"),

@@ -39,7 +39,8 @@ fn faces_are_as_bright_as_they_face_the_light() {
     }
 }
 
-/// With light from the upper left, what faces it is brighter than what faces away.
+/// With light from the upper left, what faces it is brighter than what faces away: a quarter of the way from the middle a
+/// dome leans by 0.04 to each side, of which a light at 40 degrees makes 0.02 each.
 #[test]
 fn a_dome_is_bright_at_its_upper_left() {
     let dome = heights(|x, y| (0.2 - (x - 0.5).powi(2) - (y - 0.5).powi(2)).max(0.0).sqrt());
@@ -47,8 +48,9 @@ fn a_dome_is_bright_at_its_upper_left() {
         let colours = from_above(&material(&dome, convention), NORMAL_MAPPED, plain(135.0)).colours;
         let at = |x: usize, y: usize| colours[y * SIDE + x][0];
         let (near, far) = (3 * SIDE / 8, 5 * SIDE / 8);
-        assert!(at(near, near) > at(far, near) + 0.1 && at(far, near) > at(far, far) + 0.1);
-        assert!(at(near, near) > at(near, far) + 0.1 && at(near, far) > at(far, far) + 0.1);
+        for side in [at(far, near), at(near, far)] {
+            assert!(at(near, near) > side + 0.02 && side > at(far, far) + 0.02, "{convention}: {side}");
+        }
     }
 }
 
@@ -146,22 +148,24 @@ fn offsets_are_those_of_each_rays_eye() {
 fn what_stands_out_moves_away_from_the_eye() {
     let plateau = heights(|x, y| if (0.25..0.75).contains(&x) && (0.25..0.75).contains(&y) { 1.0 } else { 0.5 });
     let material = material(&plateau, Convention::Gl);
-    let (camera, count) = (Camera { elevation: 45.0, width: 1.0 }, [96, 96]);
+    // No more than one plateau is in sight.
+    let (camera, count) = (Camera { elevation: 45.0, width: 0.8 }, [96, 96]);
     let look = Look { ambient: 1.0, highlight: 0.0, low: [0.0; 3], high: [1.0; 3], ..Look::default() };
     // The mean row of what is high.
     let row = |surface| {
         let shot = Shot { material: &material, surface, camera, look, count };
         let colours = shot.on_cpu(&Monitor::default()).unwrap().colours;
-        let high: Vec<usize> = (0..colours.len()).filter(|i| colours[*i][0] > 0.9).map(|i| i / 96).collect();
+        let high: Vec<usize> = (0..colours.len()).filter(|i| colours[*i][0] > 0.99).map(|i| i / 96).collect();
         high.iter().sum::<usize>() as f64 / high.len() as f64
     };
     let flat = row(NORMAL_MAPPED);
     for method in [ParallaxMethod::Welsh, ParallaxMethod::Limited, ParallaxMethod::steps(1), ParallaxMethod::steps(4)] {
-        assert!(row(Surface::Mapped(method)) < flat - 1.0, "{method}");
+        let row = row(Surface::Mapped(method));
+        assert!(row < flat - 1.0, "{method}: {row}, not above {flat}");
     }
     // h = 1 is SCALE / 2 texels above the plane, and is seen against what is as far behind it, at 45 degrees. Rows are
     // closer there than texels: by sin 45.
-    let rows = f64::from(SCALE) / 2.0 * 45f64.to_radians().sin() * 96.0 / SIDE as f64;
+    let rows = f64::from(SCALE) / 2.0 * 45f64.to_radians().sin() * 96.0 / (0.8 * SIDE as f64);
     let moved = flat - row(Surface::Truth);
     assert!((moved - rows).abs() < 0.5, "{moved}, not {rows}");
 }

@@ -199,7 +199,9 @@ fn a_kernel_that_differs_from_the_host_is_noticed() {
 
 #[test]
 fn every_file_under_kernels_is_registered() {
-    let texts: Vec<String> = ALL.iter().map(KernelSource::text).collect();
+    let mut texts: Vec<String> = ALL.iter().map(KernelSource::text).collect();
+    #[cfg(feature = "cli")]
+    texts.push(crate::preview::gpu::WGSL.into());
     let mut files = 0;
     let mut folders = vec![std::path::PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/kernels"))];
     while let Some(folder) = folders.pop() {
