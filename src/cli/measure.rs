@@ -11,7 +11,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use texbake::io::{Model, ModelReadOptions};
 use texbake::measure::{Figures, Input, Machine, MeasureOptions, Measured, Progress, Report, ReportFolder, measure};
-use texbake::{Baker, Convention, Error, HeightMap, Mesh, Result};
+use texbake::{BakeOptions, Baker, Convention, Error, HeightMap, Mesh, Result};
 
 /// Measure on a height map what formats, precisions, blends, parallax methods and tangents cost, and what they buy
 #[derive(Args, Debug)]
@@ -169,8 +169,9 @@ impl MeasureArguments {
         }
         let defaults = MeasureOptions::default();
         let runs = if self.quick { 1 } else { defaults.runs };
+        let bake = self.slope.bake(Some(Default::default()), None)?;
         Ok(MeasureOptions {
-            bake: self.slope.bake(Some(Default::default()), None)?,
+            bake: BakeOptions { scale: bake.scale.shrunk(self.heights.read().shrink)?, ..bake },
             convention: self.convention.unwrap_or_default(),
             seed: self.seed,
             runs: self.runs.map_or(runs, Into::into),

@@ -32,10 +32,10 @@ impl Report {
             ));
         }
         page.line(format_args!(
-            "texbake {}, seed {}, times are medians of {} runs; {}, {} threads, {}; baked by {}.\n",
+            "texbake {}, seed {}, times are {}; {}, {} threads, {}; baked by {}.\n",
             self.version,
             self.seed,
-            self.runs,
+            if self.runs == 1 { "those of one run".into() } else { format!("medians of {} runs", self.runs) },
             machine.cpu,
             machine.cores,
             machine.system,

@@ -106,6 +106,17 @@ fn adapters_are_measured_besides_the_cpu() {
     assert_eq!(devices.len(), 2, "{devices:?}");
     assert!(devices[1].as_str().unwrap().contains("llvmpipe"), "{devices:?}");
     assert_eq!(report["normal_maps"].as_array().unwrap().len(), 64);
+    // Every parallax method at the elevation of the fronts, timed by the shader library's own text.
+    assert_eq!((report["offset_times"].as_array().unwrap().len(), &report["notes"]), (25, &serde_json::json!([])));
+}
+
+#[test]
+fn a_map_that_is_reduced_keeps_its_height() {
+    let folder = folder();
+    let reduced = ["--scale", "24", "--shrink", "2", "-o", "out", "--quick", "--backend", "cpu", "-q"];
+    folder.run(&[&["measure", "height.png"], &reduced[..]].concat()).ends(0);
+    let input = &folder.json("out/report.json")["input"];
+    assert_eq!((&input["width"], &input["scale_texels"]), (&24.into(), &serde_json::json!([12.0, 12.0])));
 }
 
 #[test]
