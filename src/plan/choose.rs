@@ -1,6 +1,6 @@
 //! The cheapest maps of one height map that keep within the tolerances.
 
-use super::decision::{Decision, Rejected, bytes_a_texel, degrees, short};
+use super::decision::{Decision, Rejected, bytes_a_texel, degrees, pixels, short};
 use super::normals::{self, NoNormals, NormalChoice};
 use super::parallax::{self, ParallaxChoice};
 use super::subject::{Reduced, Subject};
@@ -188,11 +188,11 @@ fn resolution(subject: &Subject<'_>, by: u32, factors: &[u32], rejected: Vec<Rej
     let size = subject.heights.size();
     let (width, height) = (size.width() / by as usize, size.height() / by as usize);
     let covers = f64::from(by) * subject.seen.pixels_per_texel;
-    let mut reason = format!("{width} x {height}: a texel covers {} of a pixel at the nearest view", short(covers));
+    let mut reason = format!("{width} x {height}: a texel covers {} at the nearest view", pixels(covers));
     if by == 1 && covers > 1.0 {
-        reason = format!("{width} x {height}: a texel covers {} pixels, and there are no finer ones", short(covers));
+        reason += ", and there are no finer ones";
     } else if Some(&by) == factors.first() {
-        reason += "; a coarser one that divides the map would cover more than one";
+        reason += "; no coarser one divides the map and covers no more than one";
     } else if rejected.is_empty() {
         reason += "; coarser ones need larger codes";
     }

@@ -13,6 +13,7 @@ use crate::material::{Material, ParallaxMethod, Texture};
 use crate::measure::Views;
 use crate::ops::Precision;
 use crate::ops::bake::BakeOptions;
+use rayon::prelude::*;
 use std::path::Path;
 
 /// A parallax method that keeps within its tolerance, with its map if it reads one.
@@ -108,6 +109,7 @@ struct Search<'a> {
     /// The material with the finest parallax map.
     finest: Material,
     views: Views,
+    truth_method: ParallaxMethod,
     truth: Vec<[f32; 2]>,
     tried: Vec<Tried>,
 }
@@ -133,8 +135,20 @@ impl<'a> Search<'a> {
         let parallax = bake(subject.baker, reduced, finest, Precision::Exact)?;
         let finest = material(&subject.heights, &normals, &parallax, &subject.facts().bake())?;
         let (views, truth) = views(&finest, subject.seen.angle);
-        let tried = Vec::new();
-        Ok(Self { subject, reduced, normals, has_normals, bytes_left, formats, finest, views, truth, tried })
+        let (truth_method, tried) = (truth_method(&finest, subject.seen.angle), Vec::new());
+        Ok(Self {
+            subject,
+            reduced,
+            normals,
+            has_normals,
+            bytes_left,
+            formats,
+            finest,
+            views,
+            truth_method,
+            truth,
+            tried,
+        })
     }
 
     /// The methods, fewest lookups first.
@@ -144,20 +158,24 @@ impl<'a> Search<'a> {
             methods.extend([1.0, 3.0].map(|limit| ParallaxMethod::Plane { limit }));
         }
         methods.extend((1..=MOST_STEPS).map(ParallaxMethod::steps));
-        let angle = self.subject.seen.angle.to_radians();
-        let (across, up) = (angle.cos() as f32, angle.sin() as f32);
-        let along = [[across, 0.0, up], [0.0, across, up]].map(|eye| self.finest.truth(eye));
-        let truth = if along[0].fetches() > along[1].fetches() { along[0] } else { along[1] };
-        let most = truth.fetches();
-        let halvings = (2..).map(|power| 1u32 << power).take_while(|steps| *steps < most);
-        methods.extend(halvings.map(|steps| ParallaxMethod::Relief { steps, bisections: BISECTIONS }));
-        methods.push(truth);
+        let truth = self.truth_method;
+        let halvings = (2..).map(|power| 1u32 << power).take_while(|steps| *steps < self.march());
+        let relief = |steps| ParallaxMethod::Relief { steps, bisections: BISECTIONS };
+        methods.extend(halvings.map(relief).chain([relief(self.march()), truth]));
         methods.sort_by(|a, b| {
             let cost = |method: &ParallaxMethod| (method.fetches(), self.bytes(*method, self.formats[0].depth));
             let ((a, a_bytes), (b, b_bytes)) = (cost(a), cost(b));
             a.cmp(&b).then(a_bytes.total_cmp(&b_bytes))
         });
         methods
+    }
+
+    /// Steps of what is right.
+    fn march(&self) -> u32 {
+        match self.truth_method {
+            ParallaxMethod::Relief { steps, .. } => steps,
+            _ => 1,
+        }
     }
 
     /// Bytes over texels of the height map of what a method reads, the normal map aside.
@@ -311,8 +329,18 @@ impl<'a> Search<'a> {
 /// Where a material is looked at from at its shallowest, and what is right there.
 pub(super) fn views(material: &Material, angle: f64) -> (Views, Vec<[f32; 2]>) {
     let views = Views::at_elevation(angle, PIXELS, SEED);
-    let truth = views.truth(material);
-    (views, truth)
+    let truth = truth_method(material, angle);
+    let offsets = views.pixels().par_iter().map(|view| material.offset(truth, view.uv, view.eye)).collect();
+    (views, offsets)
+}
+
+/// What is right from every side: [`Material::truth`] along the axis that takes more steps. At a silhouette one step more
+/// or less would make another offset of it.
+fn truth_method(material: &Material, angle: f64) -> ParallaxMethod {
+    let (z, across) = angle.to_radians().sin_cos();
+    let (z, across) = (z as f32, across as f32);
+    let [x, y] = [[across, 0.0, z], [0.0, across, z]].map(|eye| material.truth(eye));
+    if x.fetches() > y.fetches() { x } else { y }
 }
 
 /// The maps of a reduced height map with the whole one, as a scene has them.

@@ -1,10 +1,10 @@
 //! A plan: what is chosen for each height map of a scene, and what is said of it.
 
 use super::choose::{Chosen, choose};
-use super::decision::{Decision, degrees, pixels, short, wrapped};
+use super::decision::{Decision, degrees, pixels, wrapped};
 use super::normals::NormalChoice;
 use super::parallax::ParallaxChoice;
-use super::prediction::{MapPrediction, MaterialFacts, NormalPrediction, ParallaxPrediction, Prediction};
+use super::prediction::{ErrorOf, MapPrediction, MaterialFacts, NormalPrediction, ParallaxPrediction, Prediction};
 use super::scene::{Material, Scene, below};
 use super::subject::Subject;
 use crate::baker::Baker;
@@ -81,16 +81,18 @@ impl FilePlan {
     /// What is chosen for the file, and why, in lines.
     pub fn explanation(&self) -> String {
         let Prediction { seen, normal, parallax, .. } = &self.prediction;
-        let mut text = format!(
-            "{}: {}, {}; {} texels a pixel at the nearest view, {} at the shallowest; tolerances {}, {}\n",
+        let header = format!(
+            "{}: {}, {}; {} a texel at the nearest view, {} at the shallowest; tolerances {}, {}{}",
             self.file.display(),
             self.size,
             self.height_type,
-            short(1.0 / seen.pixels_per_texel),
+            pixels(seen.pixels_per_texel),
             degrees(seen.angle),
             degrees(normal.tolerance),
             pixels(parallax.tolerance),
+            if parallax.of == ErrorOf::Most { " in 99 of 100" } else { "" },
         );
+        let mut text = wrapped(&header, ["", "    "]);
         for Decision { topic, choice, reason, rejected } in &self.decisions {
             text += &format!("  {topic}: {choice}\n{}", wrapped(reason, ["      "; 2]));
             for rejected in rejected {

@@ -149,7 +149,11 @@ impl Scene {
         let materials = scene.material.into_iter().map(|material| reader.material(material, general));
         Ok(Self {
             path: path.into(),
-            folder: folder_of_scene.join(scene.folder.unwrap_or_default()),
+            folder: match scene.folder {
+                Some(folder) => folder_of_scene.join(folder),
+                None if folder_of_scene.as_os_str().is_empty() => ".".into(),
+                None => folder_of_scene.into(),
+            },
             suffixes: scene.suffix.map(OneOrMany::into_vec),
             materials: materials.collect::<Result<_>>()?,
         })

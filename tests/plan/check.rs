@@ -11,9 +11,9 @@ fn textures() -> Folder {
     folder.grey16("tex/sub/wave_h.png", 64, 64, |x, y| wave(y, x));
     folder.grey16("tex/sub/[a]_h.png", 32, 32, bumps16);
     folder.grey8("tex/flat_h.png", 16, 16, |_, _| 128);
-    let materials = "scale = 8\n[[material]]\nfiles = '*a]_h.png'\nscale = 3\nview = { angle = 80 }\nedge = 'clamp'\n\
+    let materials = "scale = 8\nview = { angle = 60 }\n[[material]]\nfiles = '*a]_h.png'\nscale = 3\nview = { angle = 80 }\nedge = 'clamp'\n\
                      [[material]]\nfiles = 'sub/wave_*'\nscale = 4\nformat = 'tif'\nview = { texels-per-pixel = 2 }";
-    folder.file("scene.toml", "folder = 'tex'\n".to_owned() + &scene("normal = 0.3\nparallax = 1", materials));
+    folder.file("scene.toml", "folder = 'tex'\n".to_owned() + &scene("normal = 0.3\nparallax = 0.6", materials));
     folder.run(&["plan", "scene.toml", "-o", "texbake.toml"]).ends(0);
     folder
 }

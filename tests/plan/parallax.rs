@@ -57,13 +57,19 @@ fn steep_steps_take_relief_intersection_and_gentle_hills_a_few_lookups() {
 
     let folder = Folder::new();
     folder.grey16("wave_h.png", 64, 64, wave);
-    // Offsets reach 4 texels, the second order of a step is s/2 (2 pi / 64)^2 of its square: it takes steps.
-    let file = plan_of_one(&folder, &scene("normal = 1\nparallax = 1", "scale = 8"));
-    let steps: u32 =
-        method(&file).strip_prefix("steps ").unwrap_or_else(|| panic!("{}", method(&file))).parse().unwrap();
-    assert!((1..=16).contains(&steps), "{steps}");
+    // A step is too short by 1 - sin 70 degrees, 6 %, of 1.456 pixels, and looks up the height where the pixel is; the
+    // second looks it up where the first has come to. The height map, of two bytes, would be too large beside the normals.
+    let view = "scale = 8\nview = { angle = 70 }";
+    let file = plan_of_one(&folder, &scene("normal = 1\nparallax = 0.19\nbytes-per-texel = 3", view));
+    assert_eq!(method(&file), "steps 2");
+    let rejected = &decision(&file, "parallax").rejected;
+    assert!(
+        rejected.iter().any(|it| it.what == "limited" && it.why.contains("1 bytes a texel are left")),
+        "{rejected:?}"
+    );
+    assert!(rejected.iter().any(|it| it.what == "steps 1"), "{rejected:?}");
     assert_eq!(setting(&file, "maps"), Some("normal,parallax"));
-    assert!(file.prediction.parallax.pixels <= 1.0);
+    assert!(file.prediction.parallax.pixels <= 0.19);
     let map = file.prediction.parallax.map.as_ref().unwrap();
     assert_eq!((map.texels, map.bytes), ([64, 64], 64 * 64 * map.bits.parse::<usize>().unwrap() / 8));
 }
