@@ -292,7 +292,10 @@ impl<'a> Search<'a> {
             let at = if tried.len() > 1 { format!(", with {}", best.method) } else { String::new() };
             let cost = best.milliseconds.map(|ms| format!(", {} ms", short(ms))).unwrap_or_default();
             let bytes = match best.bytes > self.bytes_left {
-                true => format!(", and {} bytes a texel are left", short(self.bytes_left)),
+                true => match bytes_a_texel(self.bytes_left) {
+                    one if one.starts_with("1 byte ") => format!(", and {one} is left"),
+                    more => format!(", and {more} are left"),
+                },
                 false => String::new(),
             };
             Some(Rejected::new(what, format!("off by up to {}{at}{cost}{bytes}", pixels(best.error))))
