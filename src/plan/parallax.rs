@@ -77,7 +77,7 @@ pub(super) fn none(subject: &Subject<'_>, offset: f64) -> Option<ParallaxChoice>
     );
     let decisions = vec![Decision::new("parallax", "none", reason)];
     let method = ParallaxMethod::None;
-    (offset <= tolerance).then(|| ParallaxChoice { method, format: None, error: offset, bytes: 0.0, decisions })
+    (offset <= tolerance).then_some(ParallaxChoice { method, format: None, error: offset, bytes: 0.0, decisions })
 }
 
 /// The method of the fewest lookups that keeps within the tolerances; of those, the one of the fewest bytes.
@@ -274,15 +274,9 @@ impl<'a> Search<'a> {
 
     /// Each kind of method that was tried, at its best.
     fn rejected(&self) -> Vec<Rejected> {
-        let kinds: [(&str, fn(&ParallaxMethod) -> bool); 5] = [
-            ("limited", |method| matches!(method, ParallaxMethod::Limited)),
-            ("welsh", |method| matches!(method, ParallaxMethod::Welsh)),
-            ("plane", |method| matches!(method, ParallaxMethod::Plane { .. })),
-            ("steps", |method| matches!(method, ParallaxMethod::Steps { .. })),
-            ("relief", |method| matches!(method, ParallaxMethod::Relief { .. })),
-        ];
-        let of_kind = |is_it: fn(&ParallaxMethod) -> bool| {
-            let tried: Vec<&Tried> = self.tried.iter().filter(|tried| is_it(&tried.method)).collect();
+        let of_kind = |kind: &str| {
+            let is_it = |tried: &&Tried| tried.method.to_string().starts_with(kind);
+            let tried: Vec<&Tried> = self.tried.iter().filter(is_it).collect();
             let best = tried.iter().min_by(|a, b| a.error.total_cmp(&b.error))?;
             let what = match &tried[..] {
                 [one] => one.method.to_string(),
@@ -292,12 +286,15 @@ impl<'a> Search<'a> {
             let at = if tried.len() > 1 { format!(", with {}", best.method) } else { String::new() };
             let cost = best.milliseconds.map(|ms| format!(", {} ms", short(ms))).unwrap_or_default();
             let bytes = match best.bytes > self.bytes_left {
-                true => format!(", and {} bytes a texel are left", short(self.bytes_left)),
+                true => match bytes_a_texel(self.bytes_left) {
+                    one if one.starts_with("1 byte ") => format!(", and {one} is left"),
+                    more => format!(", and {more} are left"),
+                },
                 false => String::new(),
             };
             Some(Rejected::new(what, format!("off by up to {}{at}{cost}{bytes}", pixels(best.error))))
         };
-        kinds.into_iter().filter_map(|(_, is_it)| of_kind(is_it)).collect()
+        ["limited", "welsh", "plane", "steps", "relief"].into_iter().filter_map(of_kind).collect()
     }
 
     /// Which tolerance rules all methods out.

@@ -5,7 +5,6 @@ use super::normals::{self, NormalChoice};
 use super::parallax::{self, ParallaxChoice};
 use super::subject::{Reduced, Subject};
 use crate::error::Result;
-use crate::map::NormalFormat;
 use crate::measure::median_time;
 use crate::ops::Precision;
 use crate::ops::bake::BakeOptions;
@@ -78,7 +77,7 @@ fn measure(
     };
     let Some(format) = parallax.format else { return Ok(Measured { normal, parallax: parallax.error }) };
     let map = parallax::bake(subject.baker, reduced, format, fast)?;
-    let shown = normals.format.unwrap_or_else(NormalFormat::default);
+    let shown = normals.format.unwrap_or_default();
     let shown = normals::bake(subject.baker, reduced, shown, fast)?;
     let material = parallax::material(&subject.heights, &shown, &map, &subject.facts().bake())?;
     let (views, truth) = parallax::views(&material, subject.seen.angle);

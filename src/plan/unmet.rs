@@ -37,6 +37,5 @@ fn short_above(number: f64) -> String {
         return "0".into();
     }
     let digit = 10f64.powi(number.log10().floor() as i32 - 2);
-    let text = short((number / digit).ceil() * digit);
-    text
+    short((number / digit).ceil() * digit)
 }

@@ -64,7 +64,7 @@ fn steep_steps_take_relief_intersection_and_gentle_hills_a_few_lookups() {
     assert_eq!(method(&file), "steps 2");
     let rejected = &decision(&file, "parallax").rejected;
     assert!(
-        rejected.iter().any(|it| it.what == "limited" && it.why.contains("1 bytes a texel are left")),
+        rejected.iter().any(|it| it.what == "limited" && it.why.contains("1 byte a texel is left")),
         "{rejected:?}"
     );
     assert!(rejected.iter().any(|it| it.what == "steps 1"), "{rejected:?}");
@@ -94,12 +94,12 @@ fn bytes_and_milliseconds_bound_the_choice() {
     let folder = Folder::new();
     blocks(&folder);
     let bounded = |bounds: &str| scene(&format!("normal = 1.5\nparallax = 0.5\n{bounds}"), "scale = 16");
-    // Two bytes of normals and one of heights.
-    let file = plan_of_one(&folder, &bounded("bytes-per-texel = 3"));
-    assert!(decision(&file, "maps").reason.ends_with("in all 3 bytes a texel of the height map, of 3 allowed"));
-    let error = plan_error(&folder, &bounded("bytes-per-texel = 2.5"));
+    // Three bytes of normals, which are too steep for two, and one of heights.
+    let file = plan_of_one(&folder, &bounded("bytes-per-texel = 4"));
+    assert!(decision(&file, "maps").reason.ends_with("in all 4 bytes a texel of the height map, of 4 allowed"));
+    let error = plan_error(&folder, &bounded("bytes-per-texel = 3.5"));
     let text =
-        "the tolerance bytes-per-texel of 2.5 bytes a texel cannot be met: the best is 3 bytes a texel, with relief";
+        "the tolerance bytes-per-texel of 3.5 bytes a texel cannot be met: the best is 4 bytes a texel, with relief";
     assert!(error.contains(text), "{error}");
 
     let screen = |bounds: &str| bounded(bounds).replace("[view]", "[view]\nresolution = [1920, 1080]");
