@@ -17,6 +17,7 @@ pub struct Renderer {
     #[cfg(feature = "gpu")]
     gpu: Option<Gpu>,
     /// Whether the CPU takes over what the GPU cannot.
+    #[cfg(feature = "gpu")]
     falls_back: bool,
     reason: String,
     /// Why the CPU took over, once it did.
@@ -31,6 +32,7 @@ impl Renderer {
         Self {
             #[cfg(feature = "gpu")]
             gpu: None,
+            #[cfg(feature = "gpu")]
             falls_back: false,
             reason: "asked for".into(),
             fallback: Mutex::default(),

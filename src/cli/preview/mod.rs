@@ -77,7 +77,7 @@ pub struct PreviewArguments {
     pub iterations: NonZeroU32,
 
     /// Degrees above the surface from which it is seen, from 5 to 90, one for each row
-    #[arg(long, value_name = "DEGREES", value_delimiter = ',', value_parser = elevation, default_values_t = [60.0, 25.0])]
+    #[arg(long, value_name = "DEGREES", value_delimiter = ',', value_parser = elevation, default_value = "60,25")]
     #[arg(help_heading = PICTURE)]
     pub elevations: Vec<f32>,
 
