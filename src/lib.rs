@@ -141,6 +141,7 @@ pub mod measure;
 mod mesh;
 mod names;
 mod ops;
+#[cfg(feature = "cli")]
 pub mod plan;
 #[cfg(feature = "cli")]
 pub mod preview;

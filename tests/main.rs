@@ -14,6 +14,7 @@ mod measure;
 mod normal;
 mod oracle;
 mod parallax;
+#[cfg(feature = "cli")]
 mod plan;
 #[cfg(feature = "cli")]
 mod preview;
