@@ -55,6 +55,7 @@ pub use frames::FrameFigure;
 pub use front::{Candidate, Front, GAIN, Statistic, Step, digits, pareto_front};
 pub use maps::{NormalFigure, ParallaxFigure, Stored};
 pub use normals::TrueNormals;
+pub(crate) use offsets::distance;
 pub use offsets::{View, Views};
 pub use parallax::{OffsetFigure, OffsetTime, parallax_methods};
 pub use region::{Region, quarter_turned};

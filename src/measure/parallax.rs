@@ -62,14 +62,13 @@ pub(super) fn offset_figures(
     for &elevation in elevations {
         steps.next(&format!("parallax from {elevation} degrees"))?;
         let views = Views::at_elevation(elevation, pixels, seed);
-        let truth = views.truth(material);
+        let truth = views.truth(material, steps.monitor)?;
         for method in parallax_methods() {
-            steps.monitor.check()?;
             figures.push(OffsetFigure {
                 elevation_degrees: elevation,
                 method: method.to_string(),
                 fetches: method.fetches(),
-                error_texels: views.errors(material, method, &truth),
+                error_texels: views.errors(material, method, &truth, material.texels(), steps.monitor)?,
                 nanoseconds_per_pixel: views.nanoseconds(material, method, runs),
             });
         }
