@@ -1,7 +1,8 @@
 //! Normal maps and parallax maps: every precision, encoding, number of bits and of channels on every device.
 
 use super::steps::Steps;
-use super::{Errors, TrueNormals, median_time, normal_formats, parallax_formats};
+use super::time::median_time;
+use super::{Errors, TrueNormals, normal_formats, parallax_formats};
 use crate::baker::Baker;
 use crate::error::Result;
 use crate::map::{CodeMap, Convention, Encoding, HeightMap, MapFormat, Maps, Size, TexelFormat};

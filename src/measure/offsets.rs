@@ -1,6 +1,7 @@
 //! How far parallax methods are from the relief that they stand for.
 
-use super::{Errors, median_time};
+use super::Errors;
+use super::time::median_time;
 use crate::error::Result;
 use crate::material::{Material, ParallaxMethod};
 use crate::split_mix::SplitMix;
