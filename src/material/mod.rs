@@ -124,10 +124,17 @@ impl Material {
                 [x * scale[0], y * scale[1]]
             }
             ParallaxMethod::Steps { k } => {
-                let u = step_scale(self.scale, self.texels(), k, 1.0);
-                stepped_offset(|uv| self.parallax.sample(uv)[0], uv, eye, u, k)
+                stepped_offset(|uv| self.parallax.sample(uv)[0], uv, eye, self.step(method), k)
             }
             ParallaxMethod::Relief { steps, bisections } => relief_offset(height, uv, eye, scale, steps, bisections),
+        }
+    }
+
+    /// What a step of `method` through the parallax map multiplies the eye by.
+    pub(crate) fn step(&self, method: ParallaxMethod) -> [f32; 2] {
+        match method {
+            ParallaxMethod::Steps { k } => step_scale(self.scale, self.texels(), k, 1.0),
+            _ => [0.0; 2],
         }
     }
 

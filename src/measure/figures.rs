@@ -261,7 +261,7 @@ fn fronts(
             Some(by.of(&figure.error_texels))
         };
         let on_gpu =
-            times.iter().filter_map(|it| Some((it.method.clone(), it.nanoseconds_per_pixel, error(&it.method)?)));
+            times.iter().filter_map(|it| Some((it.method.clone(), it.nanoseconds_per_pixel?, error(&it.method)?)));
         let name = format!("time of parallax on {}, seen from {elevation} degrees", times[0].device);
         fronts.push(Front::new(name, by, ["ns per pixel", "texels"], on_gpu));
     }

@@ -53,6 +53,8 @@ pub use folder::ReportFolder;
 pub use formats::{normal_formats, parallax_formats};
 pub use frames::FrameFigure;
 pub use front::{Candidate, Front, GAIN, Statistic, Step, digits, pareto_front};
+#[cfg(all(test, feature = "gpu"))]
+pub(crate) use gpu_time::WGSL as OFFSET_TIME;
 pub use maps::{NormalFigure, ParallaxFigure, Stored};
 pub use normals::TrueNormals;
 #[cfg(feature = "cli")]

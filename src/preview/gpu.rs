@@ -5,7 +5,6 @@ use crate::backend::gpu::{Binding, Gpu, OwnPipeline};
 use crate::error::Result;
 use crate::map::Edge;
 use crate::material::{ParallaxMethod, Texture};
-use crate::shading::step_scale;
 use crate::stream::Monitor;
 use half::f16;
 use std::ops::Range;
@@ -13,6 +12,7 @@ use std::ops::Range;
 /// The kernel, and those of the shader library that it calls.
 pub(crate) const WGSL: &str = concat!(
     include_str!("../../kernels/preview.wgsl"),
+    include_str!("../../kernels/shared/parallax_method.wgsl"),
     include_str!("../../kernels/shading/welsh_offset.wgsl"),
     include_str!("../../kernels/shading/plane_offset.wgsl"),
     include_str!("../../kernels/shading/stepped_offset.wgsl"),
@@ -114,13 +114,9 @@ impl Maps {
 /// The words of the kernel's parameters, in their order.
 fn params(shot: &Shot<'_>, method: ParallaxMethod, first_row: u32) -> Vec<u32> {
     let (rays, look, material) = (shot.rays(), shot.look, shot.material);
-    let step = match method {
-        ParallaxMethod::Steps { k } => step_scale(material.scale(), material.texels(), k, 1.0),
-        _ => [0.0; 2],
-    };
     let vectors = [rays.eye, rays.ahead, rays.right, rays.down, look.light.direction(), look.low, look.high];
     let mut words: Vec<u32> = vectors.iter().flat_map(|&[x, y, z]| [x, y, z, 0.0]).map(f32::to_bits).collect();
-    words.extend(material.scale_in_uv().into_iter().chain(step).map(f32::to_bits));
+    words.extend(material.scale_in_uv().into_iter().chain(material.step(method)).map(f32::to_bits));
     words.extend([shot.count[0], shot.count[1], first_row, u32::from(shot.surface == Surface::Flat)]);
     words.extend(method.words());
     words.extend([look.ambient, look.highlight, look.shininess, rays.proportion].map(f32::to_bits));
@@ -139,20 +135,25 @@ mod tests {
 
     /// The kinds of the words of the kernel's parameters, in their order; gaps between members are none.
     fn kinds(module: &naga::Module) -> Vec<ScalarKind> {
-        let params = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some("Params")).unwrap().1;
-        let TypeInner::Struct { members, span } = &params.inner else { panic!("a struct") };
-        let mut kinds = Vec::new();
-        for member in members {
-            assert_eq!(member.offset as usize, 4 * kinds.len(), "{:?}", member.name);
-            let (count, kind) = match module.types[member.ty].inner {
-                TypeInner::Scalar(scalar) => (1, scalar.kind),
-                TypeInner::Vector { size, scalar } => (size as usize, scalar.kind),
-                ref other => panic!("{other:?}"),
-            };
-            kinds.resize(kinds.len() + count, kind);
+        let (params, _) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some("Params")).unwrap();
+        kinds_of(module, params)
+    }
+
+    fn kinds_of(module: &naga::Module, ty: naga::Handle<naga::Type>) -> Vec<ScalarKind> {
+        match &module.types[ty].inner {
+            TypeInner::Scalar(scalar) => vec![scalar.kind],
+            TypeInner::Vector { size, scalar } => vec![scalar.kind; *size as usize],
+            TypeInner::Struct { members, span } => {
+                let mut kinds = Vec::new();
+                for member in members {
+                    assert_eq!(member.offset as usize, 4 * kinds.len(), "{:?}", member.name);
+                    kinds.extend(kinds_of(module, member.ty));
+                }
+                assert_eq!(*span as usize, 4 * kinds.len());
+                kinds
+            }
+            other => panic!("{other:?}"),
         }
-        assert_eq!(*span as usize, 4 * kinds.len());
-        kinds
     }
 
     /// Parameters are told apart by their values: floats are none that an integer of a picture is.
