@@ -10,7 +10,7 @@ pub use method::ParallaxMethod;
 pub use texture::Texture;
 
 use crate::baker::Baker;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::exact::AxisScale;
 use crate::map::{Edges, HeightMap, NormalMap, ParallaxMap, Size};
 use crate::ops::bake::BakeOptions;
@@ -53,27 +53,24 @@ impl Material {
         let (Some(normals), Some(parallax)) = (&maps.normal, &maps.parallax) else {
             unreachable!("both were asked for");
         };
-        Self::of_maps(heights, normals, parallax, options.scale.resolve(heights.size())?, options.edges)
+        Ok(Self::of_maps(heights, normals, parallax, options.scale.resolve(heights.size())?, options.edges))
     }
 
     /// The material of maps that are there; they may have different sizes.
-    ///
-    /// # Errors
-    /// None so far; sizes and formats are those that maps can have.
     pub fn of_maps(
         heights: &HeightMap,
         normals: &NormalMap,
         parallax: &ParallaxMap,
         scale: AxisScale,
         edges: Edges,
-    ) -> Result<Self> {
+    ) -> Self {
         let axis = |part: i32| (f64::from(part) / f64::from(scale.q)) as f32;
-        Ok(Self {
+        Self {
             heights: Texture::of_heights(heights, edges),
             normals: Texture::of_normals(normals, edges),
             parallax: Texture::of_parallax(parallax, edges),
             scale: [axis(scale.x), axis(scale.y)],
-        })
+        }
     }
 
     /// Width and height of the height map in texels.
@@ -127,22 +124,40 @@ impl Material {
                 [x * scale[0], y * scale[1]]
             }
             ParallaxMethod::Steps { k } => {
-                let u = step_scale(self.scale, self.texels(), k, 1.0);
-                stepped_offset(|uv| self.parallax.sample(uv)[0], uv, eye, u, k)
+                stepped_offset(|uv| self.parallax.sample(uv)[0], uv, eye, self.step(method), k)
             }
             ParallaxMethod::Relief { steps, bisections } => relief_offset(height, uv, eye, scale, steps, bisections),
         }
     }
 
+    /// What a step of `method` through the parallax map multiplies the eye by.
+    pub(crate) fn step(&self, method: ParallaxMethod) -> [f32; 2] {
+        match method {
+            ParallaxMethod::Steps { k } => step_scale(self.scale, self.texels(), k, 1.0),
+            _ => [0.0; 2],
+        }
+    }
+
     /// The relief intersection that the other methods are measured against: no step crosses more than a quarter of a
     /// texel, and bisection goes on to the last bits.
-    pub fn truth(&self, eye: [f32; 3]) -> ParallaxMethod {
-        let texels = (self.scale[0] * eye[0]).hypot(self.scale[1] * eye[1]) / eye[2];
-        ParallaxMethod::Relief { steps: (4.0 * texels).clamp(16.0, 65_536.0).ceil() as u32, bisections: 16 }
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if the ray crosses more than 16 384 texels on its way through the relief.
+    pub fn truth(&self, eye: [f32; 3]) -> Result<ParallaxMethod> {
+        const MOST: f32 = 16_384.0;
+        let [x, y, z] = eye;
+        let texels = (self.scale[0] * x).hypot(self.scale[1] * y) / z;
+        if !(texels <= MOST) {
+            let scale = self.scale[0].abs().max(self.scale[1].abs());
+            let elevation = z.atan2(x.hypot(y)).to_degrees();
+            let range = format!("at most {} to be seen from {elevation} degrees", (scale * MOST / texels).floor());
+            return Err(Error::parameter("scale in texels", scale, range));
+        }
+        Ok(ParallaxMethod::Relief { steps: (4.0 * texels).max(16.0).ceil() as u32, bisections: 16 })
     }
 
     /// Texels of the height map along each axis.
-    fn texels(&self) -> [f32; 2] {
+    pub fn texels(&self) -> [f32; 2] {
         [self.size().width() as f32, self.size().height() as f32]
     }
 }
