@@ -160,3 +160,29 @@ pub(super) fn timed<T>(runs: usize, mut work: impl FnMut() -> Result<T>) -> Resu
 pub(super) fn per_texel(time: Duration, size: Size) -> f64 {
     time.as_secs_f64() * 1e9 / size.texels() as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::Grid;
+    use crate::material::Texture;
+
+    /// A device that writes nothing must not score: not even on a plane, of which zeros are the right x and y.
+    #[test]
+    fn what_is_not_written_is_far_off() {
+        let heights = HeightMap::from(Grid::from_fn(8, 4, |_, _| 128u8).unwrap());
+        let options = BakeOptions::default();
+        let truth = TrueNormals::new(&heights, &options).unwrap();
+        for format in normal_formats(Convention::Gl) {
+            let map = poisoned(heights.size(), format);
+            let errors = truth.errors(&Texture::of_normals(&map, options.edges));
+            // From z to (1, 1, 1).
+            assert!(errors.mean > 54.7, "{format:?}: {errors:?}");
+        }
+        for format in parallax_formats() {
+            let map = poisoned(heights.size(), format);
+            let errors = truth.parallax_errors(&Texture::of_parallax(&map, options.edges));
+            assert!(errors.mean > 0.99, "{format:?}: {errors:?}");
+        }
+    }
+}
