@@ -1,4 +1,4 @@
-//! Height maps and normal maps in, normal maps and parallax maps out; models in and out ([`Model`]).
+//! Height maps, normal maps and parallax maps in, normal maps and parallax maps out; models in and out ([`Model`]).
 //!
 //! A file's rows pass three steps, one module each: a decoder gives interleaved samples (`samples`), `channel`
 //! picks the height of each texel or `normal` its components, and `srgb` undoes a wrong colour space of heights and
@@ -22,6 +22,7 @@ mod input;
 mod limits;
 mod normal;
 mod obj;
+mod parallax;
 mod png;
 mod raster;
 mod raw;
@@ -36,6 +37,7 @@ mod tiff;
 pub use channel::Channel;
 pub use format::{INPUT_EXTENSIONS, default_format, default_parallax_format};
 pub use gltf::{LeftOut, Model, ModelFile, ModelFiles, ModelReadOptions, ModelReport, Primitive};
+pub use parallax::ParallaxReadOptions;
 pub use raw::{RawKind, RawLayout};
 
 use crate::error::Result;

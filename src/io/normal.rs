@@ -120,6 +120,11 @@ fn encoding(path: &Path, depth: HeightType, signed: bool, asked: Option<Encoding
         (_, true) => (&[Encoding::Snorm], "snorm: the file holds signed integers"),
         (_, false) => (&[Encoding::Unorm, Encoding::Biased], "unorm or biased: the file holds unsigned integers"),
     };
+    one_of(path, possible, what, asked)
+}
+
+/// What was `asked` for, or else the first of what is `possible` for a file.
+pub(super) fn one_of(path: &Path, possible: &[Encoding], what: &str, asked: Option<Encoding>) -> Result<Encoding> {
     let encoding = asked.unwrap_or(possible[0]);
     if possible.contains(&encoding) {
         return Ok(encoding);

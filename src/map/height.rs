@@ -1,6 +1,6 @@
 //! Height maps: one channel of integer codes or floats.
 
-use super::{Grid, Size};
+use super::{Codes, Grid, Size};
 use crate::error::{Error, Result};
 use std::fmt;
 
@@ -113,6 +113,15 @@ impl HeightMap {
             Texels::U8(grid) => Heights::U8(grid.texels()),
             Texels::U16(grid) => Heights::U16(grid.texels()),
             Texels::F32(grid) => Heights::F32(grid.texels()),
+        }
+    }
+
+    /// The same as codes of any map.
+    pub(crate) fn into_codes(self) -> Codes {
+        match self.0 {
+            Texels::U8(grid) => Codes::U8(grid.into_texels()),
+            Texels::U16(grid) => Codes::U16(grid.into_texels()),
+            Texels::F32(grid) => Codes::F32(grid.into_texels()),
         }
     }
 }

@@ -1,12 +1,12 @@
-//! Parallax maps out: one channel, read back by the formats' own crates.
+//! Parallax maps out: one channel, read back by the formats' own crates; and in.
 
 use super::support::{Folder, Noise, write_rows};
 use ::exr::prelude::{FlatSamples, ReadChannels, ReadLayers};
 use half::f16;
 use png::{BitDepth, ColorType};
 use std::path::Path;
-use texbake::io::{create_parallax, default_parallax_format};
-use texbake::{Codes, CodesRef, Depth, Encoding, ParallaxFormat, ParallaxMap, Size};
+use texbake::io::{ParallaxReadOptions, create_normals, create_parallax, default_parallax_format};
+use texbake::{Codes, CodesRef, Depth, Encoding, NormalFormat, ParallaxFormat, ParallaxMap, Size};
 use tiff::decoder::{Decoder, DecodingResult};
 use tiff::tags::Tag;
 
@@ -215,4 +215,71 @@ fn what_a_format_cannot_hold_is_refused_before_a_file_is_made() {
         assert_eq!(error.err().unwrap().to_string(), expected);
     }
     assert_eq!(folder.names(), Vec::<String>::new());
+}
+
+fn read_as(path: &Path, encoding: Option<Encoding>) -> texbake::Result<ParallaxMap> {
+    ParallaxMap::read_with(path, &ParallaxReadOptions { encoding, ..Default::default() }).map(|(map, _)| map)
+}
+
+/// Each format comes back as it was written; without a word by what the samples are.
+#[test]
+fn what_was_written_is_read() {
+    let folder = Folder::new();
+    let size = Size::new(3, 2).unwrap();
+    let bytes = || Codes::U8(vec![1, 0x7f, 0x81, 0xff, 0, 64]);
+    let words = || Codes::U16(vec![1, 0x7fff, 0x8001, 0xffff, 0, 0x1234]);
+    for (name, encoding, depth, codes, usual) in [
+        ("p.png", Encoding::Biased, Depth::Bits8, bytes(), Encoding::Biased),
+        ("p.png", Encoding::Unorm, Depth::Bits16, words(), Encoding::Biased),
+        ("p.tif", Encoding::Biased, Depth::Bits16, words(), Encoding::Biased),
+        ("p.tif", Encoding::Unorm, Depth::Bits8, bytes(), Encoding::Biased),
+        ("p.tif", Encoding::Snorm, Depth::Bits8, bytes(), Encoding::Snorm),
+        ("p.tif", Encoding::Snorm, Depth::Bits16, words(), Encoding::Snorm),
+        ("p.exr", Encoding::Float, Depth::Float32, Codes::F32(vec![0.1, -1.0, 1e-40, 1.0, 0.0, -0.5]), Encoding::Float),
+    ] {
+        let path = folder.path(name);
+        let map = ParallaxMap::new(size, format(encoding, depth), codes.clone()).unwrap();
+        map.write(&path).unwrap();
+        assert_eq!(read_as(&path, Some(encoding)).unwrap(), map, "{name} {encoding} {depth}");
+        let read = ParallaxMap::read(&path).unwrap();
+        assert_eq!(read, ParallaxMap::new(size, format(usual, depth), codes).unwrap(), "{name} {encoding} {depth}");
+    }
+    // Half floats are floats, exactly.
+    let halves = [0.5, -0.25, 1.0, 0.1].map(f16::from_f32);
+    let path = folder.path("half.exr");
+    write(&path, 2, 2, format(Encoding::Float, Depth::Float16), CodesRef::F16(&halves));
+    let read = ParallaxMap::read(&path).unwrap();
+    assert_eq!(read.format(), format(Encoding::Float, Depth::Float32));
+    assert_eq!(read.codes(), CodesRef::F32(&halves.map(f16::to_f32)));
+}
+
+#[test]
+fn what_is_no_parallax_map_is_refused() {
+    let folder = Folder::new();
+    let (png, tif, exr) = (folder.path("p.png"), folder.path("p.tif"), folder.path("p.exr"));
+    write(&png, 1, 1, format(Encoding::Biased, Depth::Bits8), CodesRef::U8(&[5]));
+    write(&tif, 1, 1, format(Encoding::Snorm, Depth::Bits8), CodesRef::U8(&[5]));
+    write(&exr, 2, 1, format(Encoding::Float, Depth::Float32), CodesRef::F32(&[0.0, f32::NAN]));
+    let refused = |path: &Path, encoding| read_as(path, encoding).unwrap_err().to_string();
+    for (path, asked, expected) in [
+        (&png, Encoding::Snorm, "snorm, for p.png: it must be biased or unorm: the file holds unsigned integers"),
+        (&tif, Encoding::Biased, "biased, for p.tif: it must be snorm: the file holds signed integers"),
+        (&exr, Encoding::Unorm, "unorm, for p.exr: it must be float: the file holds floats"),
+    ] {
+        assert_eq!(refused(path, Some(asked)), std::format!("encoding is {expected}"));
+    }
+    let remedy = "give a parallax map, or bake one from the heights with texbake parallax";
+    assert!(refused(&exr, None).ends_with(&std::format!("the texel at column 1, row 0 is NaN; {remedy}")));
+    let normals = folder.path("n.png");
+    let mut sink = create_normals(&normals, Size::new(1, 1).unwrap(), NormalFormat::default()).unwrap();
+    sink.write(0, CodesRef::U8(&[128, 128, 255])).unwrap();
+    sink.finish().unwrap();
+    assert!(refused(&normals, None).ends_with(&std::format!("row 0: 128, 128, 255; {remedy}")));
+    // A map that needs more than it may.
+    let small = ParallaxReadOptions { max_bytes: 7, ..Default::default() };
+    assert!(matches!(
+        ParallaxMap::read_with(&exr, &small),
+        Err(texbake::Error::TooLarge { .. } | texbake::Error::File { .. })
+    ));
+    assert!(ParallaxMap::read(folder.path("gone.png")).unwrap_err().to_string().contains("gone.png"));
 }

@@ -85,6 +85,28 @@ fn maps_that_were_baked_before_are_shown() {
     assert!(misread > 20 * right.max(1), "{misread} and {right}");
 }
 
+/// Other codes of the same values give the same picture: within the last of 16 bits.
+#[test]
+fn a_parallax_map_is_read_in_its_own_encoding() {
+    let folder = folder();
+    let bake = ["bake", "wall_height.png", "--maps", "normal,parallax", "--scale", "6"];
+    let show = |name: &str, format: &[&str], read: &[&str]| {
+        folder.run(&[&bake[..], &["-o", name, "--parallax-bits", "16"], format].concat()).ends(0);
+        let (material, picture) = (format!("{name}/wall"), format!("{name}.png"));
+        let usual = ["preview", "--material", &material, "-o", &picture, "--scale", "6", "--panel", "64", "-q"];
+        folder.run(&[&usual[..], &["--backend", "cpu"], read].concat()).ends(0);
+        pixels(&folder, &picture).2
+    };
+    let unorm = ["--parallax-encoding", "unorm"];
+    let biased = show("biased", &[], &[]);
+    for other in [show("signed", &["--format", "tif", "--bits", "8"], &[]), show("unorm", &unorm, &unorm)] {
+        assert!(biased.iter().zip(&other).all(|(a, b)| a.abs_diff(*b) <= 1));
+    }
+    let arguments = ["preview", "--material", "biased/wall", "-o", "x.png", "--parallax-encoding", "snorm"];
+    let refused = folder.run(&arguments).ends(1);
+    refused.says("parallax-encoding is snorm, for wall_parallax.png", &["it must be biased or unorm"]);
+}
+
 #[test]
 fn a_model_wears_the_material() {
     let folder = folder();
@@ -127,6 +149,7 @@ fn what_cannot_be_shown_is_an_error() {
         (&["wall_height.png", "--model", "gone.glb", "-o", "x.png"], 1, "gone.glb"),
         (&["wall_height.png", "--model", "bare.obj", "-o", "x.png"], 1, "bare.obj"),
         (&["wall_height.png", "--model", "text.obj", "-o", "x.png"], 1, "text.obj"),
+        (&["wall_height.png", "-o", "x.png", "--parallax-encoding", "unorm"], 2, "--material"),
         (&["wall_height.png", "-o", "x.png", "--elevations", "60,2"], 2, "from 5 to 90"),
         (&["wall_height.png", "-o", "x.png", "--light", "45"], 2, "two numbers of degrees"),
         (&["wall_height.png", "-o", "x.png", "--view", "45,90"], 2, "from -89 to 89"),

@@ -7,12 +7,9 @@ use crate::cli::settings::{Settings, open_baker};
 use std::fs;
 use std::path::{Path, PathBuf};
 use texbake::batch::{Found, Search};
-use texbake::io::{NormalReadOptions, ReadOptions};
+use texbake::io::{NormalReadOptions, ParallaxReadOptions};
 use texbake::material::Material;
-use texbake::{
-    BakeOptions, Codes, Depth, Encoding, Error, Grid, HeightMap, Heights, NormalFormat, NormalMap, ParallaxFormat,
-    ParallaxMap, Result,
-};
+use texbake::{BakeOptions, Error, Grid, HeightMap, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Result};
 
 /// A material, and what it is made of.
 pub struct Shown {
@@ -128,7 +125,10 @@ impl Baked {
             }
         };
         let parallax = match &self.parallax {
-            Some(path) => read_parallax(path, arguments)?,
+            Some(path) => {
+                let read = ParallaxReadOptions { encoding: arguments.parallax_encoding, max_bytes: read.max_bytes };
+                heard(path, ParallaxMap::read_with(path, &read).map_err(of_parallax), arguments)?
+            }
             None => {
                 let baker = open_baker(&arguments.settings.device.place()?)?;
                 let only = BakeOptions { normal: None, parallax: Some(ParallaxFormat::default()), ..*options };
@@ -160,17 +160,14 @@ fn heard<T>(path: &Path, read: Result<(T, Vec<String>)>, arguments: &PreviewArgu
     Ok(map)
 }
 
-/// A parallax map as `texbake parallax` and `bake` write them by default: biased codes in PNG; signed 16-bit ones are read
-/// as such; floats.
-fn read_parallax(path: &Path, arguments: &PreviewArguments) -> Result<ParallaxMap> {
-    let read = ReadOptions { max_bytes: arguments.settings.input.read().max_bytes, ..ReadOptions::default() };
-    let map = heard(path, HeightMap::read_with(path, &read), arguments)?;
-    let (encoding, depth, codes) = match map.heights() {
-        Heights::U8(codes) => (Encoding::Biased, Depth::Bits8, Codes::U8(codes.to_vec())),
-        Heights::U16(codes) => (Encoding::Biased, Depth::Bits16, Codes::U16(codes.to_vec())),
-        Heights::F32(values) => (Encoding::Float, Depth::Float32, Codes::F32(values.to_vec())),
-    };
-    ParallaxMap::new(map.size(), ParallaxFormat { encoding, depth }, codes)
+/// An error of the parallax map's encoding; the option `encoding` is the normal map's here.
+fn of_parallax(error: Error) -> Error {
+    match error {
+        Error::Parameter { parameter: "encoding", value, range } => {
+            Error::Parameter { parameter: "parallax-encoding", value, range }
+        }
+        error => error,
+    }
 }
 
 /// The format that was asked for, if one kind of file can hold it.

@@ -8,7 +8,7 @@ use super::exit::{Exit, Failure};
 use super::interruptible;
 use super::print::{put, say};
 use super::settings::{Backend, Settings};
-use super::values::{USUAL_ITERATIONS, iterations};
+use super::values::{USUAL_ITERATIONS, choice, iterations};
 use clap::Args;
 use maps::Shown;
 use std::num::NonZeroU32;
@@ -19,7 +19,7 @@ use texbake::preview::{
     Light, Look, ModelSheetOptions, Paint, Picture, Renderer, Sheet, SheetOptions, Surface, Told, model_sheet,
 };
 use texbake::stream::Monitor;
-use texbake::{Error, Result};
+use texbake::{Encoding, Error, Result};
 
 /// Show a material as a scene would: a sheet of all parallax methods and their errors, or a model that wears it
 #[derive(Args, Debug)]
@@ -38,7 +38,7 @@ small sun in the flat picture. The same numbers go to stdout.
 several. Heights may also be given as INPUT. Without heights there is no truth
 to compare with, and no heatmap. --scale and --edge must be those that the
 maps were baked with; --encoding, --channels and --convention say how the
-normal map is read.
+normal map is read, --parallax-encoding how the parallax map is.
 
 --model shows meshes that wear the material: normal mapped, with parallax,
 with their tangents, bitangents and normals as lines, and with the handedness
@@ -63,6 +63,10 @@ pub struct PreviewArguments {
     /// Folder of maps that were baked before, or one of its materials, as baked/wall
     #[arg(long, value_name = "FOLDER")]
     pub material: Option<PathBuf>,
+
+    /// What the codes of the parallax map of --material mean [default: biased, snorm if they are signed, float]
+    #[arg(long, value_name = "ENCODING", value_parser = choice::<Encoding>(Encoding::NAMES), requires = "material")]
+    pub parallax_encoding: Option<Encoding>,
 
     /// Model that wears the material: .glb, .gltf or .obj
     #[arg(long, value_name = "FILE")]
