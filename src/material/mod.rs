@@ -3,6 +3,7 @@
 //! Texture coordinates run from 0 to 1 over a map, u along the rows and v **down** them. Tangent space has x along growing
 //! u and y along growing v.
 
+mod intersection;
 mod method;
 mod texture;
 
@@ -138,22 +139,44 @@ impl Material {
         }
     }
 
-    /// The relief intersection that the other methods are measured against: no step crosses more than a quarter of a
-    /// texel, and bisection goes on to the last bits.
+    /// Where the pixel at `uv` sees the relief, as an offset of texture coordinates: what every [`Material::offset`] is
+    /// measured against. Between the centres of texels the heights are bilinear, and the ray meets them at a root, so
+    /// that no step misses a bump.
     ///
     /// # Errors
     /// [`Error::Parameter`] if the ray crosses more than 16 384 texels on its way through the relief.
+    pub fn intersection(&self, uv: [f32; 2], eye: [f32; 3]) -> Result<[f32; 2]> {
+        self.check_slant(eye)?;
+        let [x, y, z] = eye.map(f64::from);
+        let texels = self.texels().map(f64::from);
+        let side = if self.scale[0] < 0.0 { -1.0 } else { 1.0 };
+        let slant = [x / z * side * f64::from(self.scale[0]), y / z * side * f64::from(self.scale[1])];
+        let at = [0, 1].map(|axis| f64::from(uv[axis]) * texels[axis]);
+        let offset = intersection::intersection(&self.heights, at, slant, side);
+        Ok([0, 1].map(|axis| (offset[axis] / texels[axis]) as f32))
+    }
+
+    /// The march that pictures show as the truth: no step crosses more than a quarter of a texel, and bisection goes on
+    /// to the last bits.
+    ///
+    /// # Errors
+    /// As [`Material::intersection`].
     pub fn truth(&self, eye: [f32; 3]) -> Result<ParallaxMethod> {
-        const MOST: f32 = 16_384.0;
-        let [x, y, z] = eye;
-        let texels = (self.scale[0] * x).hypot(self.scale[1] * y) / z;
-        if !(texels <= MOST) {
-            let scale = self.scale[0].abs().max(self.scale[1].abs());
-            let elevation = z.atan2(x.hypot(y)).to_degrees();
-            let range = format!("at most {} to be seen from {elevation} degrees", (scale * MOST / texels).floor());
-            return Err(Error::parameter("scale in texels", scale, range));
-        }
+        let texels = self.check_slant(eye)?;
         Ok(ParallaxMethod::Relief { steps: (4.0 * texels).max(16.0).ceil() as u32, bisections: 16 })
+    }
+
+    /// How many texels the ray crosses on its way through the relief, if it can be followed.
+    fn check_slant(&self, [x, y, z]: [f32; 3]) -> Result<f32> {
+        const MOST: f32 = 16_384.0;
+        let texels = (self.scale[0] * x).hypot(self.scale[1] * y) / z;
+        if texels <= MOST {
+            return Ok(texels);
+        }
+        let scale = self.scale[0].abs().max(self.scale[1].abs());
+        let elevation = z.atan2(x.hypot(y)).to_degrees();
+        let range = format!("at most {} to be seen from {elevation} degrees", (scale * MOST / texels).floor());
+        Err(Error::parameter("scale in texels", scale, range))
     }
 
     /// Texels of the height map along each axis.

@@ -45,9 +45,9 @@ impl Views {
     /// The offsets that relief intersection gives, in texture coordinates.
     ///
     /// # Errors
-    /// As [`Material::truth`]; [`crate::Error::Cancelled`].
+    /// As [`Material::intersection`]; [`crate::Error::Cancelled`].
     pub fn truth(&self, material: &Material, monitor: &Monitor) -> Result<Vec<[f32; 2]>> {
-        self.each(monitor, |view| Ok(material.offset(material.truth(view.eye)?, view.uv, view.eye)))
+        self.each(monitor, |view| material.intersection(view.uv, view.eye))
     }
 
     /// The offsets that `method` gives, in texture coordinates.
