@@ -19,7 +19,8 @@ fn two_lights(
 }
 
 fn blinn_phong(m: vec3<f32>, l: vec3<f32>, v: vec3<f32>, shininess: f32) -> f32 {
-    if (dot(m, l) <= 0.0) {
+    // Opposite each other, light and eye have nothing halfway.
+    if (dot(m, l) <= 0.0 || all(l == -v)) {
         return 0.0;
     }
     return pow(max(dot(m, normalize(l + v)), 0.0), shininess);

@@ -7,7 +7,7 @@
 // vectors to eye and light by; what is interpolated is normalised per pixel. pixel_frame is for pixels (listing 7.8): it
 // normalises n and makes t of length one and orthogonal to n first, and takes the cross product of those. (The listing's
 // code takes it of the vectors as they were interpolated; b then leans, and is not of length one.) n must not be zero, and
-// t not along n.
+// t not along n: of such vectors the frame is NaN here, and zero in the twin.
 //
 // to_tangent is the product with the transposed matrix (eq. 7.32), the inverse of an orthonormal frame; to_object is
 // eq. 7.45, m_x t + m_y b + m_z n.

@@ -26,9 +26,10 @@ those of the surface. Then it says what each step buys and costs: the Pareto
 fronts.
 
 The folder gets report.json (every figure, with its unit), report.md (tables,
-words and plots), and the plots as SVG and PNG: storage, bake-time, and of
-parallax fetches, time, elevations and steps, by the 99th percentile and by
-the mean of the errors. They are replaced when all are complete; an interrupt
+words and plots), and the plots as SVG and PNG: storage, bake-time, blend-time,
+of parallax maps parallax-storage and parallax-bake-time, and of parallax
+fetches, time, elevations and steps, by the 99th percentile and by the mean of
+the errors. They are replaced when all are complete; an interrupt
 leaves the old ones.
 
 A map longer than 2048 texels on a side (256 with --quick) is measured in its

@@ -184,16 +184,17 @@ impl Channels {
 }
 
 impl Edge {
-    /// The texel that stands for texel `i` of an axis of `n` texels, for -1 <= i <= n.
+    /// The texel that stands for texel `i` of an axis of `n` texels, however far outside.
     ///
     /// An axis of one texel is its own neighbour under every edge.
     pub(crate) fn resolve(self, i: isize, n: usize) -> usize {
-        debug_assert!(-1 <= i && i <= n as isize && n > 0);
+        debug_assert!(n > 0);
         let last = n as isize - 1;
         let inside = match self {
             Self::Wrap => i.rem_euclid(n as isize),
             Self::Clamp => i.clamp(0, last),
-            Self::Mirror => (last - (last - i.abs()).abs()).max(0),
+            Self::Mirror if last == 0 => 0,
+            Self::Mirror => last - (last - i.rem_euclid(2 * last)).abs(),
         };
         inside as usize
     }

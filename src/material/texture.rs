@@ -32,9 +32,8 @@ impl<const N: usize> Texture<N> {
 
     /// The texel in column x, row y; beyond the border as the edges say.
     pub fn texel(&self, x: i64, y: i64) -> [f32; N] {
-        let [width, height] = [self.size.width(), self.size.height()];
-        let column = beyond(self.edges.x, x, width as i64) as usize;
-        self.texels[beyond(self.edges.y, y, height as i64) as usize * width + column]
+        let column = self.edges.x.resolve(x as isize, self.size.width());
+        self.texels[self.edges.y.resolve(y as isize, self.size.height()) * self.size.width() + column]
     }
 
     /// The value at texture coordinates, linear between the centres of texels, which are at (i + 1/2) / r; beyond the
@@ -59,23 +58,9 @@ fn mix(a: f32, b: f32, t: f32) -> f32 {
 fn between(coordinate: f32, count: usize, edge: Edge) -> ([usize; 2], f32) {
     let at = coordinate * count as f32 - 0.5;
     let first = at.floor();
-    let texel = |i: i64| beyond(edge, i, count as i64) as usize;
     // `as` saturates, so that what is no coordinate is still some texel.
-    let i = first as i64;
-    ([texel(i), texel(i.saturating_add(1))], at - first)
-}
-
-/// The texel that stands for texel `i` of an axis of `n`, however far outside.
-fn beyond(edge: Edge, i: i64, n: i64) -> i64 {
-    match edge {
-        Edge::Wrap => i.rem_euclid(n),
-        Edge::Clamp => i.clamp(0, n - 1),
-        Edge::Mirror if n == 1 => 0,
-        Edge::Mirror => {
-            let i = i.rem_euclid(2 * (n - 1));
-            i.min(2 * (n - 1) - i)
-        }
-    }
+    let i = first as isize;
+    ([i, i.saturating_add(1)].map(|i| edge.resolve(i, count)), at - first)
 }
 
 impl Texture<1> {

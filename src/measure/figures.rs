@@ -3,7 +3,7 @@
 use super::blends::{self, BlendFigure, Layers, blend_figures};
 use super::frames::{Extent, FrameFigure, frame_figures};
 use super::front::{Front, Statistic};
-use super::maps::{NormalFigure, PRECISIONS, ParallaxFigure, normal_figures, parallax_figures};
+use super::maps::{NormalFigure, PRECISIONS, ParallaxFigure, Stored, normal_figures, parallax_figures};
 use super::parallax::{OffsetFigure, OffsetTime, offset_figures};
 use super::region::{Region, quarter_turned, scale_for};
 use super::steps::{Progress, Steps};
@@ -158,7 +158,9 @@ pub fn measure(
     let offsets = offset_figures(&material, &options.elevations(), pixels, seed, runs, steps)?;
     let (offset_times, notes) = offset_times(measured.devices, &heights, &bake, options, steps)?;
     let frames = frame_figures(&material, measured.models, Extent { pixels, seed, runs }, steps)?;
-    let fronts = fronts(&normal_maps, &offsets, &offset_times, options.elevation);
+    let mut fronts = storage_fronts(&normal_maps, &parallax_maps);
+    fronts.extend(time_fronts(&normal_maps, &parallax_maps, &blends));
+    fronts.extend(parallax_fronts(&offsets, &offset_times, options.elevation));
     Ok(Figures { region, normal_maps, parallax_maps, blends, offsets, offset_times, pixels, frames, fronts, notes })
 }
 
@@ -223,29 +225,49 @@ fn gpus(_: &[Baker]) -> usize {
     0
 }
 
-/// Storage of normal maps and time of bakes; fetches and time of parallax, whose largest errors are where one bump hides
-/// another, by their mean too.
-fn fronts(
-    normal_maps: &[NormalFigure],
-    offsets: &[OffsetFigure],
-    offset_times: &[OffsetTime],
-    elevation: f64,
-) -> Vec<Front> {
-    let first = normal_maps.first().map(|figure| (&figure.stored.device, &figure.stored.precision));
-    let is_first = |figure: &&NormalFigure| first == Some((&figure.stored.device, &figure.stored.precision));
+/// What bytes buy: of maps by the first device, in its first precision.
+fn storage_fronts(normal_maps: &[NormalFigure], parallax_maps: &[ParallaxFigure]) -> Vec<Front> {
     let by = Statistic::Percentile99;
-    let storage = normal_maps.iter().filter(is_first).map(|figure| {
-        let name = format!("{} {} {}", figure.stored.encoding, figure.stored.bits, figure.channels);
-        (name, figure.stored.bytes_per_texel as f64, by.of(&figure.error_degrees))
+    let is_first =
+        |stored: &Stored, first: &Stored| (&stored.device, &stored.precision) == (&first.device, &first.precision);
+    let normals = normal_maps.iter().filter(|it| is_first(&it.stored, &normal_maps[0].stored)).map(|it| {
+        let name = format!("{} {} {}", it.stored.encoding, it.stored.bits, it.channels);
+        (name, it.stored.bytes_per_texel as f64, by.of(&it.error_degrees))
     });
-    let bakes = normal_maps.iter().map(|figure| {
-        let name = format!("{}: {}", short_name(&figure.stored.device), figure.name());
-        (name, figure.stored.nanoseconds_per_texel, by.of(&figure.error_degrees))
+    let parallax = parallax_maps.iter().filter(|it| is_first(&it.stored, &parallax_maps[0].stored)).map(|it| {
+        let name = format!("{} {}", it.stored.encoding, it.stored.bits);
+        (name, it.stored.bytes_per_texel as f64, by.of(&it.error))
     });
-    let mut fronts = vec![
-        Front::new("storage of normal maps", by, ["bytes per texel", "degrees"], storage),
-        Front::new("time of bakes", by, ["ns per texel", "degrees"], bakes),
-    ];
+    vec![
+        Front::new("storage of normal maps", by, ["bytes per texel", "degrees"], normals),
+        Front::new("storage of parallax maps", by, ["bytes per texel", "of values from -1 to 1"], parallax),
+    ]
+}
+
+/// What time buys on every device: of bakes and of blends.
+fn time_fronts(normal_maps: &[NormalFigure], parallax_maps: &[ParallaxFigure], blends: &[BlendFigure]) -> Vec<Front> {
+    let by = Statistic::Percentile99;
+    let on = |device: &str, name: String| format!("{}: {name}", short_name(device));
+    let normals = normal_maps
+        .iter()
+        .map(|it| (on(&it.stored.device, it.name()), it.stored.nanoseconds_per_texel, by.of(&it.error_degrees)));
+    let parallax = parallax_maps
+        .iter()
+        .map(|it| (on(&it.stored.device, it.stored.name()), it.stored.nanoseconds_per_texel, by.of(&it.error)));
+    let blends = blends.iter().map(|it| {
+        let name = on(&it.device, format!("{}, {} {}", it.method, it.encoding, it.bits));
+        (name, it.nanoseconds_per_texel, by.of(&it.error_degrees))
+    });
+    vec![
+        Front::new("time of bakes", by, ["ns per texel", "degrees"], normals),
+        Front::new("time of bakes of parallax maps", by, ["ns per texel", "of values from -1 to 1"], parallax),
+        Front::new("time of blends", by, ["ns per texel", "degrees"], blends),
+    ]
+}
+
+/// Fetches and time of parallax, whose largest errors are where one bump hides another, by their mean too.
+fn parallax_fronts(offsets: &[OffsetFigure], offset_times: &[OffsetTime], elevation: f64) -> Vec<Front> {
+    let mut fronts = Vec::new();
     for by in [Statistic::Percentile99, Statistic::Mean] {
         let seen = || offsets.iter().filter(|figure| figure.elevation_degrees == elevation);
         let fetches = seen().map(|it| (it.method.clone(), f64::from(it.fetches), by.of(&it.error_texels)));

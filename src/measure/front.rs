@@ -24,7 +24,7 @@ pub struct Candidate {
     pub cost: f64,
     /// In the front's unit of errors.
     pub error: f64,
-    /// Whether it is worth its cost: nothing that costs as little is as right, but for a gain below [`GAIN`].
+    /// Whether it is worth its cost: nothing that costs as little is as right, but for what is noise.
     pub is_on_front: bool,
 }
 
@@ -84,8 +84,8 @@ pub fn pareto_front(points: &[(f64, f64)]) -> Vec<usize> {
     order
 }
 
-/// The share of an error by which a step of a [`Front`] lessens it at least: less is noise, of times above all.
-pub const GAIN: f64 = 0.05;
+/// The share of costs and errors by which they differ at least along a [`Front`]: less is noise, of times above all.
+pub(super) const NOISE: f64 = 0.05;
 
 impl Statistic {
     /// This number of some errors.
@@ -117,13 +117,7 @@ impl Front {
         let candidate = |(name, cost, error)| Candidate { name, cost, error, is_on_front: false };
         let mut candidates: Vec<Candidate> = candidates.into_iter().map(candidate).collect();
         let points: Vec<(f64, f64)> = candidates.iter().map(|it| (it.cost, it.error)).collect();
-        let mut front = pareto_front(&points);
-        let mut least = f64::INFINITY;
-        front.retain(|&index| {
-            let is_worth_it = points[index].1 <= (1.0 - GAIN) * least;
-            least = if is_worth_it { points[index].1 } else { least };
-            is_worth_it
-        });
+        let front = without_noise(&points, pareto_front(&points));
         front.iter().for_each(|&index| candidates[index].is_on_front = true);
         let step = |pair: &[usize]| Step::between(&candidates[pair[0]], &candidates[pair[1]], cost_unit, error_unit);
         let steps = front.windows(2).map(step).collect();
@@ -145,6 +139,26 @@ impl Front {
         });
         cheapest.into_iter().chain(self.steps.iter().map(|step| step.words.clone())).collect()
     }
+}
+
+/// The points of a front, by rising cost, without those that are no gain over the one before, nor those that cost as much
+/// as a better one.
+fn without_noise(points: &[(f64, f64)], front: Vec<usize>) -> Vec<usize> {
+    let mut kept: Vec<usize> = Vec::new();
+    for index in front {
+        let (cost, error) = points[index];
+        if let Some(&last) = kept.last() {
+            let (last_cost, last_error) = points[last];
+            if error > (1.0 - NOISE) * last_error {
+                continue;
+            }
+            if last_cost > (1.0 - NOISE) * cost {
+                kept.pop();
+            }
+        }
+        kept.push(index);
+    }
+    kept
 }
 
 impl Step {

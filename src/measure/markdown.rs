@@ -1,6 +1,7 @@
 //! A report to read: tables, words, and the plots beside it.
 
-use super::{Errors, GAIN, Report, digits};
+use super::front::NOISE;
+use super::{Errors, Report, digits};
 use std::fmt::Write;
 
 impl Report {
@@ -32,10 +33,9 @@ impl Report {
             ));
         }
         page.line(format_args!(
-            "texbake {}, seed {}, times are {}; {}, {} threads, {}; baked by {}.\n",
+            "texbake {}, seed {}; {}, {} threads, {}; baked by {}.\n",
             self.version,
             self.seed,
-            if self.runs == 1 { "those of one run".into() } else { format!("medians of {} runs", self.runs) },
             machine.cpu,
             machine.cores,
             machine.system,
@@ -43,19 +43,33 @@ impl Report {
         ));
         page.line(format_args!("```\n{}\n```\n", self.command));
         self.figures.notes.iter().for_each(|note| page.line(format_args!("{note}\n")));
-        page.line("Errors are given as largest / what 99 of 100 do not exceed / mean.\n");
+        page.line(format_args!(
+            "Errors are given as largest / what 99 of 100 do not exceed / mean; times are {}.\n",
+            self.times()
+        ));
+    }
+
+    fn times(&self) -> String {
+        if self.runs == 1 { "those of one run".into() } else { format!("medians of {} runs", self.runs) }
     }
 
     fn put_fronts(&self, page: &mut Page, plots: &[(String, String)]) {
         page.line("## What each step buys and costs\n");
         for front in &self.figures.fronts {
             page.line(format_args!("### {}\n", capital(&front.name)));
-            page.line(format_args!("By {}; gains below {} % are left out.\n", front.by, 100.0 * GAIN));
+            page.line(format_args!(
+                "By {}; what differs by less than {} %, in cost or error, is left out.\n",
+                front.by,
+                100.0 * NOISE
+            ));
             front.lines().iter().for_each(|line| page.line(format_args!("- {line}")));
             page.line("");
         }
         for (file, what) in plots {
             page.line(format_args!("![{what}]({file})\n"));
+        }
+        if !self.figures.offset_times.is_empty() {
+            page.line("Times of parallax on GPUs are in words and tables alone.\n");
         }
     }
 

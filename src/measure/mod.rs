@@ -52,7 +52,7 @@ pub use figures::{Figures, MeasureOptions, Measured, measure};
 pub use folder::ReportFolder;
 pub use formats::{normal_formats, parallax_formats};
 pub use frames::FrameFigure;
-pub use front::{Candidate, Front, GAIN, Statistic, Step, digits, pareto_front};
+pub use front::{Candidate, Front, Statistic, Step, digits, pareto_front};
 #[cfg(all(test, feature = "gpu"))]
 pub(crate) use gpu_time::WGSL as OFFSET_TIME;
 pub use maps::{NormalFigure, ParallaxFigure, Stored};
@@ -61,7 +61,7 @@ pub use normals::TrueNormals;
 pub(crate) use offsets::distance;
 pub use offsets::{View, Views};
 pub use parallax::{OffsetFigure, OffsetTime, parallax_methods};
-pub use region::{Region, quarter_turned};
+pub use region::Region;
 pub use report::{Input, Machine, Report};
 pub use steps::Progress;
 #[cfg(feature = "cli")]

@@ -1,6 +1,6 @@
 //! The part of a map that is measured.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::exact::{AxisScale, Rational, Scale};
 use crate::map::{Grid, HeightMap, Heights, Size};
 use serde::Serialize;
@@ -20,7 +20,7 @@ pub struct Region {
 
 impl Region {
     /// The middle of a map, no more than `limit` texels long on either side.
-    pub fn middle(size: Size, limit: usize) -> Self {
+    pub(super) fn middle(size: Size, limit: usize) -> Self {
         let [(x, width), (y, height)] = [size.width(), size.height()].map(|length| {
             let part = length.min(limit);
             ((length - part) / 2, part)
@@ -28,11 +28,8 @@ impl Region {
         Self { x, y, width, height }
     }
 
-    /// This part of a map, as a map of its own: its edges are its own too.
-    ///
-    /// # Errors
-    /// None for a region within the map.
-    pub fn of(self, map: &HeightMap) -> Result<HeightMap> {
+    /// This part of a map that it lies within, as a map of its own: its edges are its own too.
+    pub(super) fn of(self, map: &HeightMap) -> Result<HeightMap> {
         let (columns, Self { x, y, width, height }) = (map.size().width(), self);
         let at = |column: usize, row: usize| (y + row) * columns + x + column;
         Ok(match map.heights() {
@@ -44,10 +41,7 @@ impl Region {
 }
 
 /// A map turned by a quarter, to the right.
-///
-/// # Errors
-/// None for a map that is there.
-pub fn quarter_turned(map: &HeightMap) -> Result<HeightMap> {
+pub(super) fn quarter_turned(map: &HeightMap) -> Result<HeightMap> {
     let (columns, rows) = (map.size().width(), map.size().height());
     let at = |column: usize, row: usize| (rows - 1 - column) * columns + row;
     Ok(match map.heights() {
@@ -58,9 +52,17 @@ pub fn quarter_turned(map: &HeightMap) -> Result<HeightMap> {
 }
 
 /// What is `axes` for a map of `size`.
+///
+/// # Errors
+/// [`Error::Parameter`] for heights that along one axis alone are too low to be told from none.
 pub(super) fn scale_for(axes: AxisScale, size: Size) -> Result<Scale> {
     if axes.x == axes.y {
         return Ok(Scale::texels(Rational::new(axes.x.into(), axes.q.into())?));
+    }
+    if axes.x == 0 || axes.y == 0 {
+        let [x, y] = [axes.x, axes.y].map(|part| f64::from(part) / f64::from(axes.q));
+        let range = "above 0 along both axes, or along neither: texels of that size are too long and narrow";
+        return Err(Error::parameter("depth", format!("{x} and {y} texels"), range));
     }
     // A scale of x/q texels along `width` of them is one of 1 along width q/x.
     let extent = |texels: usize, part: i32| Rational::new(texels as i64 * i64::from(axes.q), i64::from(part).abs());
@@ -85,6 +87,18 @@ mod tests {
     fn a_quarter_turn_takes_the_top_row_to_the_right() {
         let map = HeightMap::from(Grid::new(3, 2, vec![1u16, 2, 3, 4, 5, 6]).unwrap());
         assert_eq!(quarter_turned(&map).unwrap(), Grid::new(2, 3, vec![4u16, 1, 5, 2, 6, 3]).unwrap().into());
+    }
+
+    #[test]
+    fn a_height_that_vanishes_along_one_axis_is_refused() {
+        let size = Size::new(8, 8).unwrap();
+        let axes = Scale::physical(1.into(), 100_000_000.into(), 1.into()).resolve(size).unwrap();
+        assert_eq!((axes.x > 0, axes.y), (true, 0));
+        assert!(
+            scale_for(axes, size).unwrap_err().to_string().starts_with("depth is 8 and 0 texels: it must be above 0")
+        );
+        let none = AxisScale { x: 0, y: 0, ..axes };
+        assert_eq!(scale_for(none, size).unwrap(), Scale::texels(0));
     }
 
     #[test]

@@ -4,14 +4,17 @@ use crate::cli::support::{Folder, bumps8, read_png};
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
-const PLOTS: [&str; 10] = [
+const PLOTS: [&str; 13] = [
     "bake-time",
+    "blend-time",
+    "parallax-bake-time",
     "parallax-elevations",
     "parallax-elevations-mean",
     "parallax-fetches",
     "parallax-fetches-mean",
     "parallax-steps",
     "parallax-steps-mean",
+    "parallax-storage",
     "parallax-time",
     "parallax-time-mean",
     "storage",
@@ -72,7 +75,7 @@ fn the_report_is_whole_and_its_errors_do_not_depend_on_threads() {
 
     let mut report = folder.json("new/report/report.json");
     for (list, count) in
-        [("normal_maps", 32), ("parallax_maps", 16), ("blends", 14), ("offsets", 75), ("frames", 16), ("fronts", 6)]
+        [("normal_maps", 32), ("parallax_maps", 16), ("blends", 14), ("offsets", 75), ("frames", 16), ("fronts", 9)]
     {
         assert_eq!(report[list].as_array().unwrap().len(), count, "{list}");
     }
@@ -126,10 +129,16 @@ fn what_is_wrong_is_said_before_anything_is_measured() {
     folder.grey8("own/storage.png", 4, 4, bumps8);
     for (arguments, status, parts) in [
         (&["missing.png", "-o", "out"][..], 1, &["missing.png"][..]),
-        (&["height.png", "-o", "out", "--elevation", "90"], 2, &["--elevation is 90: it must be above 0 and below 90"]),
+        (
+            &["height.png", "-o", "out", "--elevation", "90"],
+            2,
+            &["--elevation is 90: it must be 1 degree or more, and below 90"],
+        ),
         (&["height.png", "-o", "out", "--precision", "fast"], 2, &["--precision is fast: it must be left out"]),
         (&["height.png", "-o", "out", "--size", "2x2"], 2, &["--depth is missing"]),
-        (&["height.png", "-o", "out", "--runs", "0"], 2, &["--runs"]),
+        (&["height.png", "-o", "out", "--runs", "0"], 2, &["--runs", "1..=1000"]),
+        (&["height.png", "-o", "out", "--runs", "18446744073709551615"], 2, &["--runs"]),
+        (&["height.png", "-o", "out", "--runs", "1001"], 2, &["--runs", "1..=1000"]),
         (
             &["height.png", "-o", "out", "--backend", "cpu", "--adapter", "x"],
             2,

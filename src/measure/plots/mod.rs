@@ -6,7 +6,7 @@ mod chart;
 mod labels;
 
 use super::markdown::capital;
-use super::{Figures, Statistic};
+use super::{Figures, Front, Statistic};
 use crate::error::Result;
 use axis::{Axis, Spacing};
 use canvas::Picture;
@@ -21,14 +21,18 @@ pub(super) struct Plot {
     pub png: Vec<u8>,
 }
 
-/// The names of the fronts' plots, in their order, and how their costs are spaced.
-const FRONTS: [(&str, Spacing); 6] = [
-    ("storage", Spacing::Linear),
-    ("bake-time", Spacing::Log),
-    ("parallax-fetches", Spacing::LogFromZero),
-    ("parallax-time", Spacing::Log),
-    ("parallax-fetches-mean", Spacing::LogFromZero),
-    ("parallax-time-mean", Spacing::Log),
+/// The names of fronts, or how they begin if they go on after a space, by which error, the names of their plots, and how their costs are spaced. Those of times
+/// on GPUs, of which there may be any number, have none.
+const FRONTS: [(&str, Statistic, &str, Spacing); 9] = [
+    ("storage of normal maps", Statistic::Percentile99, "storage", Spacing::Linear),
+    ("storage of parallax maps", Statistic::Percentile99, "parallax-storage", Spacing::Linear),
+    ("time of bakes", Statistic::Percentile99, "bake-time", Spacing::Log),
+    ("time of bakes of parallax maps", Statistic::Percentile99, "parallax-bake-time", Spacing::Log),
+    ("time of blends", Statistic::Percentile99, "blend-time", Spacing::Log),
+    ("fetches of parallax, ", Statistic::Percentile99, "parallax-fetches", Spacing::LogFromZero),
+    ("time of parallax, ", Statistic::Percentile99, "parallax-time", Spacing::Log),
+    ("fetches of parallax, ", Statistic::Mean, "parallax-fetches-mean", Spacing::LogFromZero),
+    ("time of parallax, ", Statistic::Mean, "parallax-time-mean", Spacing::Log),
 ];
 
 /// The names of the plots over elevations and over steps.
@@ -43,15 +47,21 @@ const METHODS: [&str; 8] =
 
 /// The names of all files.
 pub(super) fn plot_files() -> impl Iterator<Item = String> {
-    let names = FRONTS.map(|(name, _)| name).into_iter().chain(LINES.into_iter().flat_map(|(a, b, _)| [a, b]));
+    let names = FRONTS.map(|(_, _, name, _)| name).into_iter().chain(LINES.into_iter().flat_map(|(a, b, _)| [a, b]));
     names.flat_map(|name| ["svg", "png"].map(|extension| format!("{name}.{extension}")))
 }
 
 /// All pictures of a measurement.
 pub(super) fn plots(figures: &Figures) -> Result<Vec<Plot>> {
-    let fronts = figures.fronts.iter().zip(FRONTS).map(|(front, (name, spacing))| {
+    let of = |(begins, by, name, spacing): (&str, Statistic, &'static str, Spacing)| {
+        // A name that ends with a comma goes on.
+        let is_it =
+            |it: &&Front| it.by == by && (it.name == begins || begins.ends_with(' ') && it.name.starts_with(begins));
+        figures.fronts.iter().find(is_it).map(|front| (front, name, spacing))
+    };
+    let fronts = FRONTS.into_iter().filter_map(of).map(|(front, name, spacing)| {
         let points = |are_best: bool| {
-            let chosen = front.candidates.iter().filter(move |it| it.is_on_front == are_best);
+            let chosen = front.candidates.iter().filter(move |it| it.is_on_front == are_best && it.error.is_finite());
             chosen.map(|it| (it.name.clone(), it.cost, it.error)).collect::<Vec<_>>()
         };
         let mut best = points(true);
@@ -76,7 +86,7 @@ pub(super) fn plots(figures: &Figures) -> Result<Vec<Plot>> {
     fronts.chain(lines).collect()
 }
 
-impl super::Front {
+impl Front {
     /// What its plot shows.
     fn title(&self) -> String {
         format!("{}: {}", capital(&self.name), self.by)
