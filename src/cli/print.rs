@@ -10,6 +10,7 @@ use texbake::batch::{
     BlendJob, BlendOutcome, FileResult, Job, ModelTangents, Outcome, ParallaxNumbers, Report, TangentJob,
     describe_codes,
 };
+use texbake::measure::digits;
 use texbake::verify::{Agreement, Comparison, Errors};
 use texbake::{Baked, Baker, Device, Error, HeightType, NormalFormat, Ran, Scale, Size};
 
@@ -183,18 +184,11 @@ pub fn tangents_line(job: &TangentJob, outcome: &Outcome<ModelTangents>) -> Opti
         let seconds = model.computing.as_secs_f64();
         let rate = total.triangles as f64 / 1e6 / seconds.max(1e-9);
         line += &format!("; {} ({})", ran.name(), job.baker.reason());
-        line += &format!("; {} ms, {} Mtriangle/s", three_digits(seconds * 1e3), three_digits(rate));
+        line += &format!("; {} ms, {} Mtriangle/s", digits(seconds * 1e3), digits(rate));
     }
     let (all, bytes_in, bytes_out) = (milliseconds(outcome), bytes(outcome.bytes_in), bytes(outcome.bytes_out));
     line += &format!("; {all} with files, {bytes_in} in, {bytes_out} out");
     Some(line)
-}
-
-/// A number above zero with at least three digits that tell something: `1234`, `12.3`, `0.0123`.
-fn three_digits(number: f64) -> String {
-    let before_the_point = number.max(1e-9).log10().floor() as i32 + 1;
-    let decimals = (3 - before_the_point).clamp(0, 9) as usize;
-    format!("{number:.decimals$}")
 }
 
 /// `1 vertex`, `2 vertices`.
@@ -347,7 +341,7 @@ pub fn comparison_table(comparisons: &[Comparison]) -> String {
         if let Some(bound) = comparison.bound {
             let cell = |errors: Errors, bound: f64| match errors.count {
                 0 => String::new(),
-                _ => format!("{}/{}/{}", short(errors.largest), short(errors.mean), short(bound)),
+                _ => format!("{}/{}/{}", digits(errors.largest), digits(errors.mean), digits(bound)),
             };
             let name = comparison.operation.to_owned();
             let cells = [cell(codes, bound.codes), cell(ulps, bound.ulps), cell(degrees, bound.degrees)];
@@ -355,17 +349,6 @@ pub fn comparison_table(comparisons: &[Comparison]) -> String {
         }
     }
     if errors.is_empty() { table.trim_fmt() } else { format!("{}\n{}", table.trim_fmt(), errors.trim_fmt()) }
-}
-
-/// A number with three digits that tell something, and all of those before the point.
-fn short(number: f64) -> String {
-    match number {
-        0.0 => "0".into(),
-        0.01..1.0 => format!("{number:.3}").trim_end_matches('0').into(),
-        1.0..100.0 => format!("{number:.1}").trim_end_matches(".0").into(),
-        100.0..1e9 => format!("{number:.0}"),
-        _ => format!("{number:.1e}"),
-    }
 }
 
 fn plain_table(header: &[&str], numbers: &[usize]) -> Table {
@@ -394,12 +377,6 @@ fn bytes(count: u64) -> String {
 
 #[cfg(test)]
 mod tests {
-    #[test]
-    fn numbers_have_three_digits() {
-        let numbers = [1234.0, 123.4, 12.34, 1.234, 0.001_234].map(super::three_digits);
-        assert_eq!(numbers, ["1234", "123", "12.3", "1.23", "0.00123"]);
-    }
-
     #[test]
     fn byte_counts_are_decimal() {
         assert_eq!(["999 B", "1.0 kB", "12.3 MB"].map(str::to_owned), [999, 1000, 12_345_678].map(super::bytes));

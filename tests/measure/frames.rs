@@ -13,9 +13,14 @@ fn figure<'a>(figures: &'a [FrameFigure], mesh: &str, frame: &str) -> &'a FrameF
     figure
 }
 
-/// The cotangent frame is of cross products of differences of a thousandth, of positions of about 1 in f32, which have
-/// lost nothing: a few roundings, and those of the tangents' interpolation.
-const ROUNDING: f64 = 1e-3;
+/// Degrees that a frame may be off by roundings of u = 2^-24.
+///
+/// Differences of positions and of texture coordinates are rounded once; a cross product is off by 5 u, a product with a
+/// difference of u by 7 u. The differences to the right and down are orthogonal on a plane that lies flat, so that a
+/// gradient's two parts are twice as long as their sum at most: 16 u for each of T and B. Over the longer one's length, a
+/// normal of length one beside them, and the sum of the three: 16 u more. Tangents, interpolated and made orthogonal, are
+/// off by as much. The sum of a sheared frame is half as long as its parts at least.
+const ROUNDING: f64 = 2.0 * 48.0 / (1 << 24) as f64 * 57.3;
 
 #[test]
 fn an_even_mapping_has_one_answer_with_tangents_and_without() {

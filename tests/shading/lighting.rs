@@ -96,8 +96,10 @@ fn highlights_are_a_power_of_the_half_angle_s_cosine() {
         let is_clear = f64s::dot(m64, l64).abs() > 1e-4 && f64s::length(half) > 0.3;
         // A cosine next to 0 has a logarithm without a bound, and a power next to nothing.
         if is_clear && f64s::dot(m64, half) > 0.5 * f64s::length(half) {
-            let shininess = 2f32.powi(arguments.len() as i32 % 7);
+            let shininess = 2f32.powi(arguments.len() as i32 / 2 % 7);
             arguments.push([m[0], m[1], m[2], l[0], l[1], l[2], v[0], v[1], v[2], shininess]);
+            // The eye opposite to the light.
+            arguments.push([m[0], m[1], m[2], l[0], l[1], l[2], -l[0], -l[1], -l[2], shininess]);
         }
     }
     let highlight = Examined {
@@ -109,12 +111,13 @@ fn highlights_are_a_power_of_the_half_angle_s_cosine() {
             // Halfway between the ends of vectors of one length is halfway between their directions.
             let half = [0, 1, 2].map(|axis| 0.5 * (l[axis] + v[axis]));
             let power = (f64s::length(m) * f64s::angle(m, half).to_radians().cos()).powf(a[9]);
-            [if f64s::dot(m, l) > 0.0 { power } else { 0.0 }]
+            [if f64s::dot(m, l) > 0.0 && half != [0.0; 3] { power } else { 0.0 }]
         },
         formula: &|a| {
             let [m, l, v] = [0, 3, 6].map(|at| vector(&a, at));
-            let half = real::normalized(real::add(l, v));
-            [if real::dot(m, l).value > 0.0 { real::dot(m, half).powf(a[9]) } else { a[9].constant(0.0) }]
+            let sum = real::add(l, v);
+            let is_dark = real::dot(m, l).value <= 0.0 || sum.iter().all(|part| part.value == 0.0);
+            [if is_dark { a[9].constant(0.0) } else { real::dot(m, real::normalized(sum)).powf(a[9]) }]
         },
         arguments,
         #[cfg(feature = "gpu")]
