@@ -98,9 +98,10 @@ impl Renderer {
     /// Takes a shot.
     ///
     /// # Errors
-    /// [`Error::Device`] if a GPU fails for which the CPU does not take over, or its sampler cannot do the map's edges: it
+    /// [`Error::Parameter`] as [`Shot::on_cpu`]; [`Error::Device`] if a GPU fails for which the CPU does not take over, or its sampler cannot do the map's edges: it
     /// repeats. [`Error::Cancelled`] if `monitor` says so.
     pub fn take(&self, shot: &Shot<'_>, monitor: &Monitor) -> Result<Samples> {
+        shot.check()?;
         #[cfg(feature = "gpu")]
         if let Some(gpu) = &self.gpu {
             let taken = match gpu::can_take(shot) {
