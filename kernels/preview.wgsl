@@ -26,11 +26,7 @@ struct Params {
     count: vec2<u32>,
     first_row: u32,
     is_flat: u32,
-    // METHOD_... below, steps, bisections, and the longest offset in heights.
-    method: u32,
-    steps: u32,
-    bisections: u32,
-    limit: f32,
+    method: ParallaxMethod,
     ambient: f32,
     highlight: f32,
     shininess: f32,
@@ -47,17 +43,6 @@ struct Params {
 @group(0) @binding(6) var linear: sampler;
 @group(0) @binding(7) var<storage, read_write> samples: array<f32>;
 
-const METHOD_NONE = 0u;
-const METHOD_WELSH = 1u;
-const METHOD_LIMITED = 2u;
-const METHOD_PLANE = 3u;
-const METHOD_STEPS = 4u;
-const METHOD_RELIEF = 5u;
-
-fn height(uv: vec2<f32>) -> f32 {
-    return textureSampleLevel(heights, linear, uv, 0.0).r;
-}
-
 fn normal(uv: vec2<f32>) -> vec3<f32> {
     let x = textureSampleLevel(normals_x, linear, uv, 0.0).r;
     let y = textureSampleLevel(normals_y, linear, uv, 0.0).r;
@@ -65,29 +50,6 @@ fn normal(uv: vec2<f32>) -> vec3<f32> {
     let m = vec3<f32>(x, y, z);
     let square = dot(m, m);
     return select(vec3<f32>(), m * inverseSqrt(square), square > 0.0);
-}
-
-fn offset(uv: vec2<f32>, v: vec3<f32>) -> vec2<f32> {
-    switch params.method {
-        case METHOD_WELSH: {
-            return welsh_offset(height(uv), params.scale, -0.5 * params.scale, v);
-        }
-        case METHOD_LIMITED: {
-            return limited_offset(height(uv), params.scale, -0.5 * params.scale, v);
-        }
-        case METHOD_PLANE: {
-            return params.scale * plane_offset(normal(uv), height(uv) - 0.5, v, params.limit);
-        }
-        case METHOD_STEPS: {
-            return stepped_offset(parallax, linear, 0.0, vec2<f32>(1.0, 0.0), uv, v, params.step, params.steps);
-        }
-        case METHOD_RELIEF: {
-            return relief_offset(heights, linear, 0.0, uv, v, params.scale, params.steps, params.bisections);
-        }
-        default: {
-            return vec2<f32>();
-        }
-    }
 }
 
 @compute @workgroup_size(8, 8)
@@ -102,7 +64,7 @@ fn preview(@builtin(global_invocation_id) id: vec3<u32>) {
     let met = params.eye.xyz - params.eye.z / ray.z * ray;
     let uv = vec2<f32>(met.x, met.y / params.proportion);
     let v = -normalize(ray);
-    let moved = offset(uv, v);
+    let moved = parallax_offset(params.method, uv, v, params.scale, params.step);
 
     let colour = mix(params.low.xyz, params.high.xyz, height(uv + moved));
     var m = vec3<f32>(0.0, 0.0, 1.0);

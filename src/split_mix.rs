@@ -14,6 +14,12 @@ impl SplitMix {
         mixed ^ (mixed >> 31)
     }
 
+    /// A number from 0 up to 1, of 53 bits.
+    #[allow(dead_code, reason = "not all who take this file in want it")]
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
     /// An integer in `0..end`.
     pub fn below(&mut self, end: u64) -> u64 {
         self.bits() % end

@@ -9,6 +9,7 @@ mod faults;
 mod gpu;
 mod inspect;
 mod io;
+mod material;
 mod materials;
 mod measure;
 mod normal;

@@ -7,7 +7,6 @@ use super::settings::{HeightInput, Slope, max_bytes};
 use super::values::{ByteSize, choice};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use texbake::io::{Model, ModelReadOptions};
 use texbake::measure::{Figures, Input, Machine, MeasureOptions, Measured, Progress, Report, ReportFolder, measure};
@@ -63,7 +62,7 @@ pub struct MeasureArguments {
     #[arg(long, value_name = "FILE", help_heading = MEASURED)]
     pub model: Vec<PathBuf>,
 
-    /// Elevation of the view in degrees, between 0 and 90, that the fronts of parallax are for; 90 is straight from above
+    /// Elevation of the view in degrees, 1 to below 90, that the fronts of parallax are for; 90 is straight from above
     #[arg(long, value_name = "DEGREES", default_value_t = MeasureOptions::default().elevation, help_heading = MEASURED)]
     pub elevation: f64,
 
@@ -76,9 +75,9 @@ pub struct MeasureArguments {
     #[arg(long, value_name = "NUMBER", default_value_t = MeasureOptions::default().seed, help_heading = MEASURED)]
     pub seed: u64,
 
-    /// Runs of which each time is the median, after one that does not count [default: 5]
-    #[arg(long, value_name = "N", help_heading = MEASURED)]
-    pub runs: Option<NonZeroUsize>,
+    /// Runs of which each time is the median, after one that does not count, 1 to 1000 [default: 5]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000), help_heading = MEASURED)]
+    pub runs: Option<u16>,
 
     /// Green of the normal maps: up (gl) or down (dx) [default: gl]
     #[arg(long, value_parser = choice::<Convention>(Convention::NAMES), help_heading = MEASURED)]

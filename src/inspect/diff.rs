@@ -1,6 +1,6 @@
 //! How two normal maps differ.
 
-use super::angle;
+use super::angle::{self, has_direction};
 use super::census::Texel;
 use super::read::for_each_band;
 use crate::error::{Error, Result};
@@ -180,7 +180,6 @@ impl Directions {
 
 /// The angle between two vectors, if both have a direction.
 fn degrees(a: [f64; 3], b: [f64; 3]) -> f32 {
-    let has_direction = |v: [f64; 3]| v.iter().all(|component| component.is_finite()) && v != [0.0; 3];
     if has_direction(a) && has_direction(b) { angle::degrees(a, b) as f32 } else { NO_ANGLE }
 }
 

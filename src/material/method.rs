@@ -44,13 +44,26 @@ impl ParallaxMethod {
             Self::Welsh | Self::Limited => 1,
             Self::Plane { .. } => 2,
             Self::Steps { k } => k.get(),
-            Self::Relief { steps, bisections } => steps + bisections,
+            Self::Relief { steps, bisections } => steps.saturating_add(bisections),
+        }
+    }
+
+    /// As `kernels/shared/parallax_method.wgsl` has it: METHOD_..., steps, bisections, and the bits of the limit.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn words(self) -> [u32; 4] {
+        match self {
+            Self::None => [0, 0, 0, 0],
+            Self::Welsh => [1, 0, 0, 0],
+            Self::Limited => [2, 0, 0, 0],
+            Self::Plane { limit } => [3, 0, 0, limit.to_bits()],
+            Self::Steps { k } => [4, k.get(), 0, 0],
+            Self::Relief { steps, bisections } => [5, steps, bisections, 0],
         }
     }
 }
 
 impl fmt::Display for ParallaxMethod {
-    /// `none`, `welsh`, `limited`, `plane`, `steps 4`, `relief 64+8`.
+    /// `none`, `welsh`, `limited`, `plane, limit 1`, `steps 4`, `relief 64+8`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::None => f.pad("none"),

@@ -3,6 +3,7 @@
 //! Texture coordinates run from 0 to 1 over a map, u along the rows and v **down** them. Tangent space has x along growing
 //! u and y along growing v.
 
+mod intersection;
 mod method;
 mod texture;
 
@@ -10,7 +11,7 @@ pub use method::ParallaxMethod;
 pub use texture::Texture;
 
 use crate::baker::Baker;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::exact::AxisScale;
 use crate::map::{Edges, HeightMap, NormalMap, ParallaxMap, Size};
 use crate::ops::bake::BakeOptions;
@@ -53,27 +54,24 @@ impl Material {
         let (Some(normals), Some(parallax)) = (&maps.normal, &maps.parallax) else {
             unreachable!("both were asked for");
         };
-        Self::of_maps(heights, normals, parallax, options.scale.resolve(heights.size())?, options.edges)
+        Ok(Self::of_maps(heights, normals, parallax, options.scale.resolve(heights.size())?, options.edges))
     }
 
     /// The material of maps that are there; they may have different sizes.
-    ///
-    /// # Errors
-    /// None so far; sizes and formats are those that maps can have.
     pub fn of_maps(
         heights: &HeightMap,
         normals: &NormalMap,
         parallax: &ParallaxMap,
         scale: AxisScale,
         edges: Edges,
-    ) -> Result<Self> {
+    ) -> Self {
         let axis = |part: i32| (f64::from(part) / f64::from(scale.q)) as f32;
-        Ok(Self {
+        Self {
             heights: Texture::of_heights(heights, edges),
             normals: Texture::of_normals(normals, edges),
             parallax: Texture::of_parallax(parallax, edges),
             scale: [axis(scale.x), axis(scale.y)],
-        })
+        }
     }
 
     /// Width and height of the height map in texels.
@@ -127,22 +125,62 @@ impl Material {
                 [x * scale[0], y * scale[1]]
             }
             ParallaxMethod::Steps { k } => {
-                let u = step_scale(self.scale, self.texels(), k, 1.0);
-                stepped_offset(|uv| self.parallax.sample(uv)[0], uv, eye, u, k)
+                stepped_offset(|uv| self.parallax.sample(uv)[0], uv, eye, self.step(method), k)
             }
             ParallaxMethod::Relief { steps, bisections } => relief_offset(height, uv, eye, scale, steps, bisections),
         }
     }
 
-    /// The relief intersection that the other methods are measured against: no step crosses more than a quarter of a
-    /// texel, and bisection goes on to the last bits.
-    pub fn truth(&self, eye: [f32; 3]) -> ParallaxMethod {
-        let texels = (self.scale[0] * eye[0]).hypot(self.scale[1] * eye[1]) / eye[2];
-        ParallaxMethod::Relief { steps: (4.0 * texels).clamp(16.0, 65_536.0).ceil() as u32, bisections: 16 }
+    /// What a step of `method` through the parallax map multiplies the eye by.
+    pub(crate) fn step(&self, method: ParallaxMethod) -> [f32; 2] {
+        match method {
+            ParallaxMethod::Steps { k } => step_scale(self.scale, self.texels(), k, 1.0),
+            _ => [0.0; 2],
+        }
+    }
+
+    /// Where the pixel at `uv` sees the relief, as an offset of texture coordinates: what every [`Material::offset`] is
+    /// measured against. Between the centres of texels the heights are bilinear, and the ray meets them at a root, so
+    /// that no step misses a bump.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if the ray crosses more than 16 384 texels on its way through the relief.
+    pub fn intersection(&self, uv: [f32; 2], eye: [f32; 3]) -> Result<[f32; 2]> {
+        self.check_slant(eye)?;
+        let [x, y, z] = eye.map(f64::from);
+        let texels = self.texels().map(f64::from);
+        let side = if self.scale[0] < 0.0 { -1.0 } else { 1.0 };
+        let slant = [x / z * side * f64::from(self.scale[0]), y / z * side * f64::from(self.scale[1])];
+        let at = [0, 1].map(|axis| f64::from(uv[axis]) * texels[axis]);
+        let offset = intersection::intersection(&self.heights, at, slant, side);
+        Ok([0, 1].map(|axis| (offset[axis] / texels[axis]) as f32))
+    }
+
+    /// The march that pictures show as the truth: no step crosses more than a quarter of a texel, and bisection goes on
+    /// to the last bits.
+    ///
+    /// # Errors
+    /// As [`Material::intersection`].
+    pub fn truth(&self, eye: [f32; 3]) -> Result<ParallaxMethod> {
+        let texels = self.check_slant(eye)?;
+        Ok(ParallaxMethod::Relief { steps: (4.0 * texels).max(16.0).ceil() as u32, bisections: 16 })
+    }
+
+    /// How many texels the ray crosses on its way through the relief, if it can be followed.
+    fn check_slant(&self, [x, y, z]: [f32; 3]) -> Result<f32> {
+        const MOST: f32 = 16_384.0;
+        let texels = (self.scale[0] * x).hypot(self.scale[1] * y) / z;
+        if texels <= MOST {
+            return Ok(texels);
+        }
+        let scale = self.scale[0].abs().max(self.scale[1].abs());
+        let elevation = z.atan2(x.hypot(y)).to_degrees();
+        let range = format!("at most {} to be seen from {elevation} degrees", (scale * MOST / texels).floor());
+        Err(Error::parameter("scale in texels", scale, range))
     }
 
     /// Texels of the height map along each axis.
-    fn texels(&self) -> [f32; 2] {
+    pub fn texels(&self) -> [f32; 2] {
         [self.size().width() as f32, self.size().height() as f32]
     }
 }

@@ -30,6 +30,13 @@ impl<const N: usize> Texture<N> {
         &self.texels
     }
 
+    /// The texel in column x, row y; beyond the border as the edges say.
+    pub fn texel(&self, x: i64, y: i64) -> [f32; N] {
+        let [width, height] = [self.size.width(), self.size.height()];
+        let column = beyond(self.edges.x, x, width as i64) as usize;
+        self.texels[beyond(self.edges.y, y, height as i64) as usize * width + column]
+    }
+
     /// The value at texture coordinates, linear between the centres of texels, which are at (i + 1/2) / r; beyond the
     /// border as the edges say.
     pub fn sample(&self, [u, v]: [f32; 2]) -> [f32; N] {

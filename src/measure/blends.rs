@@ -1,13 +1,13 @@
 //! Blends of two normal maps against the normals of the heights' sum.
 
-use super::maps::{per_texel, timed};
+use super::maps::{per_texel, poisoned, timed};
 use super::normals::{errors_of, normal_of};
 use super::steps::Steps;
 use super::{Errors, TrueNormals};
 use crate::baker::Baker;
 use crate::error::Result;
 use crate::exact::Rational;
-use crate::map::{Convention, Depth, Encoding, HeightMap, NormalFormat, NormalMap};
+use crate::map::{Convention, Depth, Encoding, HeightMap, NormalFormat};
 use crate::material::Texture;
 use crate::ops::bake::{BakeOptions, NormalOptions};
 use crate::ops::blend::{BlendInputs, BlendMethod, BlendOptions};
@@ -80,7 +80,7 @@ pub(super) fn blend_figures(
         for (name, method, weights) in methods() {
             steps.next(&format!("blend, {name}, {encoding} {depth}"))?;
             let options = BlendOptions { method, tile: true, format, ..BlendOptions::default() };
-            let mut map = NormalMap::zeroed(base.0.size(), format);
+            let mut map = poisoned(base.0.size(), format);
             let time = timed(runs, || device.blend_into(&inputs, &options, map.codes_mut()))?;
             let truth = |x: usize, y: usize| {
                 let [a, b] = [truths[0].slope(x, y), truths[1].slope(x % repeated.width(), y % repeated.height())];

@@ -14,7 +14,8 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// Of errors at or above zero, in any order; of none all are zero.
+    /// Of errors at or above zero, in any order; of none all are zero. One that is NaN counts as infinite, so that it is
+    /// within no tolerance.
     ///
     /// ```
     /// use texbake::measure::Errors;
@@ -26,11 +27,26 @@ impl Errors {
         if errors.is_empty() {
             return Self::default();
         }
+        errors.iter_mut().filter(|error| error.is_nan()).for_each(|error| *error = f32::INFINITY);
         let count = errors.len();
         let mean = errors.iter().copied().map(f64::from).sum::<f64>() / count as f64;
         let largest = errors.iter().copied().fold(0.0, f32::max);
         let rank = (count * 99).div_ceil(100);
         let (_, percentile_99, _) = errors.select_nth_unstable_by(rank - 1, f32::total_cmp);
         Self { largest: largest.into(), percentile_99: (*percentile_99).into(), mean }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Errors;
+
+    #[test]
+    fn what_is_no_number_is_the_largest() {
+        for nan in [f32::NAN, -f32::NAN] {
+            let mut errors = vec![1.0; 200];
+            errors[77] = nan;
+            assert_eq!(Errors::of(errors), Errors { largest: f64::INFINITY, percentile_99: 1.0, mean: f64::INFINITY });
+        }
     }
 }

@@ -8,7 +8,7 @@ use super::parallax::{OffsetFigure, OffsetTime, offset_figures};
 use super::region::{Region, quarter_turned, scale_for};
 use super::steps::{Progress, Steps};
 use super::surfaces::SURFACES;
-use super::{normal_formats, parallax_formats};
+use super::{Views, normal_formats, parallax_formats};
 use crate::baker::Baker;
 use crate::error::{Error, Result};
 use crate::map::{Convention, HeightMap};
@@ -28,11 +28,12 @@ pub struct MeasureOptions {
     pub convention: Convention,
     /// What pixels are drawn from.
     pub seed: u64,
-    /// Runs of which a time is the median, after one that is not counted.
+    /// Runs of which a time is the median, after one that is not counted: 1 to 1000.
     pub runs: usize,
     /// Less: a smaller part of the map, fewer pixels, fewer elevations.
     pub quick: bool,
-    /// The elevation, in degrees, that the fronts of parallax are for.
+    /// The elevation, in degrees, that the fronts of parallax are for: 1 and more, below 90. What is seen from below 1
+    /// degree is tens of heights away.
     pub elevation: f64,
 }
 
@@ -81,6 +82,16 @@ pub struct Figures {
 }
 
 impl MeasureOptions {
+    fn check(&self) -> Result<()> {
+        if !(1.0..90.0).contains(&self.elevation) {
+            return Err(Error::parameter("elevation", self.elevation, "1 degree or more, and below 90"));
+        }
+        if !(1..=1000).contains(&self.runs) {
+            return Err(Error::parameter("runs", self.runs, "from 1 to 1000"));
+        }
+        Ok(())
+    }
+
     /// The longest side of the part that is measured, in texels.
     fn side(&self) -> usize {
         if self.quick { 256 } else { 2048 }
@@ -116,9 +127,7 @@ pub fn measure(
     monitor: &Monitor,
     watch: &mut dyn FnMut(Progress<'_>),
 ) -> Result<Figures> {
-    if !(options.elevation > 0.0 && options.elevation < 90.0) {
-        return Err(Error::parameter("elevation", options.elevation, "above 0 and below 90 degrees"));
-    }
+    options.check()?;
     let (convention, runs, seed) = (options.convention, options.runs, options.seed);
     let size = measured.heights.size();
     let region = Region::middle(size, options.side());
@@ -131,6 +140,11 @@ pub fn measure(
     };
     let of_detail = BakeOptions { scale: scale_for(axes, detail.size())?, ..bake };
     let layers = Layers { base: (&heights, bake), detail: (&detail, of_detail) };
+    let material = Material::bake(&Baker::cpu(), &heights, &BakeOptions { normal: None, parallax: None, ..bake })?;
+    for elevation in options.elevations() {
+        // Before hours of work.
+        Views::at_elevation(elevation, 1, options.seed).truth(&material, monitor)?;
+    }
 
     let of = count(measured, options);
     let steps = &mut Steps { done: 0, of, monitor, watch };
@@ -140,7 +154,6 @@ pub fn measure(
         parallax_maps.extend(parallax_figures(device, &heights, &bake, runs, steps)?);
         blends.extend(blend_figures(device, &layers, convention, runs, steps)?);
     }
-    let material = Material::bake(&Baker::cpu(), &heights, &BakeOptions { normal: None, parallax: None, ..bake })?;
     let pixels = options.pixels();
     let offsets = offset_figures(&material, &options.elevations(), pixels, seed, runs, steps)?;
     let (offset_times, notes) = offset_times(measured.devices, &heights, &bake, options, steps)?;
@@ -175,7 +188,8 @@ fn offset_times(
         return Ok((times, notes));
     }
     let part = Region::middle(heights.size(), SIDE_ON_GPU).of(heights)?;
-    let bake = BakeOptions { scale: scale_for(bake.scale.resolve(heights.size())?, part.size())?, ..*bake };
+    let scale = scale_for(bake.scale.resolve(heights.size())?, part.size())?;
+    let bake = BakeOptions { scale, normal: None, parallax: None, ..*bake };
     let material = Material::bake(&Baker::cpu(), &part, &bake)?;
     let seen = (options.elevation, options.pixels(), options.seed);
     for device in devices {
@@ -247,7 +261,7 @@ fn fronts(
             Some(by.of(&figure.error_texels))
         };
         let on_gpu =
-            times.iter().filter_map(|it| Some((it.method.clone(), it.nanoseconds_per_pixel, error(&it.method)?)));
+            times.iter().filter_map(|it| Some((it.method.clone(), it.nanoseconds_per_pixel?, error(&it.method)?)));
         let name = format!("time of parallax on {}, seen from {elevation} degrees", times[0].device);
         fronts.push(Front::new(name, by, ["ns per pixel", "texels"], on_gpu));
     }

@@ -1,10 +1,11 @@
 //! Normal maps and parallax maps: every precision, encoding, number of bits and of channels on every device.
 
 use super::steps::Steps;
-use super::{Errors, TrueNormals, median_time, normal_formats, parallax_formats};
+use super::time::median_time;
+use super::{Errors, TrueNormals, normal_formats, parallax_formats};
 use crate::baker::Baker;
 use crate::error::Result;
-use crate::map::{Convention, HeightMap, Maps, NormalMap, ParallaxMap, Size, TexelFormat};
+use crate::map::{CodeMap, Convention, Encoding, HeightMap, MapFormat, Maps, Size, TexelFormat};
 use crate::material::Texture;
 use crate::ops::Precision;
 use crate::ops::bake::BakeOptions;
@@ -95,7 +96,7 @@ pub(super) fn normal_figures(
             let (encoding, depth, channels) = (format.encoding, format.depth, format.channels);
             steps.next(&format!("normal map, {precision}, {encoding} {depth} {channels}"))?;
             let options = BakeOptions { normal: Some(format), parallax: None, precision, ..*options };
-            let mut map = NormalMap::zeroed(size, format);
+            let mut map = poisoned(size, format);
             let time = timed(runs, || {
                 device.bake_into(heights, &options, Maps { normal: Some(map.codes_mut()), parallax: None })
             })?;
@@ -123,7 +124,7 @@ pub(super) fn parallax_figures(
         for format in parallax_formats() {
             steps.next(&format!("parallax map, {precision}, {} {}", format.encoding, format.depth))?;
             let options = BakeOptions { normal: None, parallax: Some(format), precision, ..*options };
-            let mut map = ParallaxMap::zeroed(size, format);
+            let mut map = poisoned(size, format);
             let time = timed(runs, || {
                 device.bake_into(heights, &options, Maps { normal: None, parallax: Some(map.codes_mut()) })
             })?;
@@ -134,6 +135,14 @@ pub(super) fn parallax_figures(
         }
     }
     Ok(figures)
+}
+
+/// Room for a map in which a texel that nobody writes is far off: NaN, -1, or 1 where no code is below zero.
+pub(super) fn poisoned<F: MapFormat>(size: Size, format: F) -> CodeMap<F> {
+    let mut map = CodeMap::zeroed(size, format);
+    let byte = if format.stored().encoding == Encoding::Snorm { 0x80 } else { 0xff };
+    map.codes_mut().bytes_mut().fill(byte);
+    map
 }
 
 /// How long work takes that may fail: the median of `runs` runs.
@@ -150,4 +159,30 @@ pub(super) fn timed<T>(runs: usize, mut work: impl FnMut() -> Result<T>) -> Resu
 /// Nanoseconds for each texel.
 pub(super) fn per_texel(time: Duration, size: Size) -> f64 {
     time.as_secs_f64() * 1e9 / size.texels() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::Grid;
+    use crate::material::Texture;
+
+    /// A device that writes nothing must not score: not even on a plane, of which zeros are the right x and y.
+    #[test]
+    fn what_is_not_written_is_far_off() {
+        let heights = HeightMap::from(Grid::from_fn(8, 4, |_, _| 128u8).unwrap());
+        let options = BakeOptions::default();
+        let truth = TrueNormals::new(&heights, &options).unwrap();
+        for format in normal_formats(Convention::Gl) {
+            let map = poisoned(heights.size(), format);
+            let errors = truth.errors(&Texture::of_normals(&map, options.edges));
+            // From z to (1, 1, 1).
+            assert!(errors.mean > 54.7, "{format:?}: {errors:?}");
+        }
+        for format in parallax_formats() {
+            let map = poisoned(heights.size(), format);
+            let errors = truth.parallax_errors(&Texture::of_parallax(&map, options.edges));
+            assert!(errors.mean > 0.99, "{format:?}: {errors:?}");
+        }
+    }
 }

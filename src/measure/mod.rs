@@ -53,11 +53,16 @@ pub use folder::ReportFolder;
 pub use formats::{normal_formats, parallax_formats};
 pub use frames::FrameFigure;
 pub use front::{Candidate, Front, GAIN, Statistic, Step, digits, pareto_front};
+#[cfg(all(test, feature = "gpu"))]
+pub(crate) use gpu_time::WGSL as OFFSET_TIME;
 pub use maps::{NormalFigure, ParallaxFigure, Stored};
 pub use normals::TrueNormals;
+#[cfg(feature = "cli")]
+pub(crate) use offsets::distance;
 pub use offsets::{View, Views};
 pub use parallax::{OffsetFigure, OffsetTime, parallax_methods};
 pub use region::{Region, quarter_turned};
 pub use report::{Input, Machine, Report};
 pub use steps::Progress;
-pub use time::median_time;
+#[cfg(feature = "cli")]
+pub(crate) use time::median_time;

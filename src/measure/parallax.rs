@@ -30,8 +30,9 @@ pub struct OffsetTime {
     pub elevation_degrees: f64,
     /// The method, as [`ParallaxMethod`] prints it.
     pub method: String,
-    /// Time by the WGSL of the shader library, of many pixels at once: the median.
-    pub nanoseconds_per_pixel: f64,
+    /// Time by the WGSL of the shader library, of many pixels at once: the median. Nothing where the longest dispatch is
+    /// not told from one that moves no pixel.
+    pub nanoseconds_per_pixel: Option<f64>,
 }
 
 /// Every method: none, Welsh's, limited, planes with two limits, k steps up to 16, and relief intersection by few steps
@@ -62,14 +63,13 @@ pub(super) fn offset_figures(
     for &elevation in elevations {
         steps.next(&format!("parallax from {elevation} degrees"))?;
         let views = Views::at_elevation(elevation, pixels, seed);
-        let truth = views.truth(material);
+        let truth = views.truth(material, steps.monitor)?;
         for method in parallax_methods() {
-            steps.monitor.check()?;
             figures.push(OffsetFigure {
                 elevation_degrees: elevation,
                 method: method.to_string(),
                 fetches: method.fetches(),
-                error_texels: views.errors(material, method, &truth),
+                error_texels: views.errors(material, method, &truth, material.texels(), steps.monitor)?,
                 nanoseconds_per_pixel: views.nanoseconds(material, method, runs),
             });
         }

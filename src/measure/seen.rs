@@ -32,7 +32,6 @@ const PIXEL: f64 = 2.0 * 0.577_350_269_189_625_8 / 1080.0;
 /// two and a half radii away, 26 degrees above the mesh's x-y plane. What hides what is not looked at.
 pub(super) fn pixels(mesh: &Mesh, tangents: &Tangents, count: usize, seed: u64) -> Vec<Pixel> {
     let mut random = SplitMix(seed);
-    let mut unit = move || (random.bits() >> 11) as f64 / (1u64 << 53) as f64;
     let triangles = tangents.triangles.as_deref().unwrap_or(mesh.triangles());
     if triangles.is_empty() {
         return Vec::new();
@@ -41,8 +40,8 @@ pub(super) fn pixels(mesh: &Mesh, tangents: &Tangents, count: usize, seed: u64) 
     let seen = Seen { mesh, tangents, packed: tangents.with_sign_in_lowest_bit() };
     let tries = 20 * count;
     let pixel = |_| {
-        let triangle = ((unit() * triangles.len() as f64) as usize).min(triangles.len() - 1);
-        let (root, share) = (unit().sqrt(), unit());
+        let triangle = ((random.unit() * triangles.len() as f64) as usize).min(triangles.len() - 1);
+        let (root, share) = (random.unit().sqrt(), random.unit());
         let shares = [1.0 - root, root * (1.0 - share), root * share];
         seen.pixel(triangle, triangles[triangle], shares, eye)
     };

@@ -13,6 +13,7 @@ use crate::map::{
     ParallaxFormat, ParallaxMap, Size,
 };
 use crate::material::{ParallaxMethod, Texture};
+use crate::stream::Monitor;
 use std::path::{Path, PathBuf};
 
 /// What was found of one height map's maps.
@@ -134,8 +135,10 @@ impl Checking<'_> {
             None => NormalMap::new(Size::new(1, 1)?, NormalFormat::default(), Codes::U8(vec![128, 128, 255]))?,
         };
         let material = material(self.heights, &normals, &baked, &options)?;
-        let (views, truth) = views(&material, seen.angle);
-        let error = predicted.of.errors(views.errors(&material, method, &truth)) * seen.pixels_per_texel;
+        let monitor = Monitor::default();
+        let (views, truth) = views(&material, seen.angle, &monitor)?;
+        let errors = views.errors(&material, method, &truth, material.texels(), &monitor)?;
+        let error = predicted.of.errors(errors) * seen.pixels_per_texel;
         let what = format!("{name}: offsets by {} are off by", predicted.method);
         self.compare(&what, predicted.of.words(), error, most, [error, predicted.pixels].map(pixels));
         Ok(())

@@ -13,7 +13,7 @@ use crate::material::{Material, ParallaxMethod, Texture};
 use crate::measure::Views;
 use crate::ops::Precision;
 use crate::ops::bake::BakeOptions;
-use rayon::prelude::*;
+use crate::stream::Monitor;
 use std::path::Path;
 
 /// A parallax method that keeps within its tolerance, with its map if it reads one.
@@ -134,8 +134,8 @@ impl<'a> Search<'a> {
         let normals = super::normals::bake(subject.baker, reduced, normals.unwrap_or_default(), Precision::Exact)?;
         let parallax = bake(subject.baker, reduced, finest, Precision::Exact)?;
         let finest = material(&subject.heights, &normals, &parallax, &subject.facts().bake())?;
-        let (views, truth) = views(&finest, subject.seen.angle);
-        let (truth_method, tried) = (truth_method(&finest, subject.seen.angle), Vec::new());
+        let (views, truth) = views(&finest, subject.seen.angle, subject.monitor)?;
+        let (truth_method, tried) = (truth_method(&finest, subject.seen.angle)?, Vec::new());
         Ok(Self {
             subject,
             reduced,
@@ -187,15 +187,15 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn error(&self, material: &Material, method: ParallaxMethod) -> f64 {
-        let errors = self.views.errors(material, method, &self.truth);
-        self.subject.tolerance().parallax_of.errors(errors) * self.subject.seen.pixels_per_texel
+    fn error(&self, material: &Material, method: ParallaxMethod) -> Result<f64> {
+        let errors = self.views.errors(material, method, &self.truth, material.texels(), self.subject.monitor)?;
+        Ok(self.subject.tolerance().parallax_of.errors(errors) * self.subject.seen.pixels_per_texel)
     }
 
     /// The choice of this method, if it keeps within the tolerances.
     fn attempt(&mut self, method: ParallaxMethod, offset: f64) -> Result<Option<ParallaxChoice>> {
         let tolerance = self.subject.tolerance();
-        let error = self.error(&self.finest, method);
+        let error = self.error(&self.finest, method)?;
         let milliseconds = tolerance.milliseconds.map(|_| self.milliseconds(method));
         let bytes = self.bytes(method, self.formats[0].depth);
         let is_slow = milliseconds.zip(tolerance.milliseconds).is_some_and(|(takes, bound)| takes > bound);
@@ -210,7 +210,7 @@ impl<'a> Search<'a> {
         for format in self.formats.clone() {
             let map = bake(self.subject.baker, self.reduced, format, Precision::Exact)?;
             let material = material(&self.subject.heights, &self.normals, &map, &self.subject.facts().bake())?;
-            let (error, bytes) = (self.error(&material, method), self.bytes(method, format.depth));
+            let (error, bytes) = (self.error(&material, method)?, self.bytes(method, format.depth));
             if error <= tolerance.parallax && bytes <= self.bytes_left {
                 return Ok(Some(self.choice(method, Some(format), error, bytes, milliseconds, offset, coarser)));
             }
@@ -324,20 +324,19 @@ impl<'a> Search<'a> {
 }
 
 /// Where a material is looked at from at its shallowest, and what is right there.
-pub(super) fn views(material: &Material, angle: f64) -> (Views, Vec<[f32; 2]>) {
+pub(super) fn views(material: &Material, angle: f64, monitor: &Monitor) -> Result<(Views, Vec<[f32; 2]>)> {
     let views = Views::at_elevation(angle, PIXELS, SEED);
-    let truth = truth_method(material, angle);
-    let offsets = views.pixels().par_iter().map(|view| material.offset(truth, view.uv, view.eye)).collect();
-    (views, offsets)
+    let truth = views.offsets(material, truth_method(material, angle)?, monitor)?;
+    Ok((views, truth))
 }
 
 /// What is right from every side: [`Material::truth`] along the axis that takes more steps. At a silhouette one step more
 /// or less would make another offset of it.
-fn truth_method(material: &Material, angle: f64) -> ParallaxMethod {
+fn truth_method(material: &Material, angle: f64) -> Result<ParallaxMethod> {
     let (z, across) = angle.to_radians().sin_cos();
     let (z, across) = (z as f32, across as f32);
-    let [x, y] = [[across, 0.0, z], [0.0, across, z]].map(|eye| material.truth(eye));
-    if x.fetches() > y.fetches() { x } else { y }
+    let (x, y) = (material.truth([across, 0.0, z])?, material.truth([0.0, across, z])?);
+    Ok(if x.fetches() > y.fetches() { x } else { y })
 }
 
 /// The maps of a reduced height map with the whole one, as a scene has them.
@@ -347,7 +346,7 @@ pub(super) fn material(
     parallax: &ParallaxMap,
     options: &BakeOptions,
 ) -> Result<Material> {
-    Material::of_maps(heights, normals, parallax, options.scale.resolve(heights.size())?, options.edges)
+    Ok(Material::of_maps(heights, normals, parallax, options.scale.resolve(heights.size())?, options.edges))
 }
 
 /// A parallax map of the reduced heights.

@@ -80,7 +80,8 @@ fn measure(
     let shown = normals.format.unwrap_or_default();
     let shown = normals::bake(subject.baker, reduced, shown, fast)?;
     let material = parallax::material(&subject.heights, &shown, &map, &subject.facts().bake())?;
-    let (views, truth) = parallax::views(&material, subject.seen.angle);
-    let texels = subject.tolerance().parallax_of.errors(views.errors(&material, parallax.method, &truth));
+    let (views, truth) = parallax::views(&material, subject.seen.angle, subject.monitor)?;
+    let errors = views.errors(&material, parallax.method, &truth, material.texels(), subject.monitor)?;
+    let texels = subject.tolerance().parallax_of.errors(errors);
     Ok(Measured { normal, parallax: texels * subject.seen.pixels_per_texel })
 }

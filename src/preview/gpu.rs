@@ -5,13 +5,14 @@ use crate::backend::gpu::{Binding, Gpu, OwnPipeline};
 use crate::error::Result;
 use crate::map::Edge;
 use crate::material::{ParallaxMethod, Texture};
-use crate::shading::step_scale;
 use crate::stream::Monitor;
 use half::f16;
+use std::ops::Range;
 
 /// The kernel, and those of the shader library that it calls.
 pub(crate) const WGSL: &str = concat!(
     include_str!("../../kernels/preview.wgsl"),
+    include_str!("../../kernels/shared/parallax_method.wgsl"),
     include_str!("../../kernels/shading/welsh_offset.wgsl"),
     include_str!("../../kernels/shading/plane_offset.wgsl"),
     include_str!("../../kernels/shading/stepped_offset.wgsl"),
@@ -40,12 +41,13 @@ pub(super) fn take(gpu: &Gpu, shot: &Shot<'_>, wgsl: &str, monitor: &Monitor) ->
     let pipeline = gpu.untested().compile(wgsl, "preview", &[])?;
     let maps = Maps::of(shot, gpu.untested().filters_floats());
     let [across, down] = shot.count;
-    let lookups = u64::from(shot.method().fetches() + 7) * u64::from(across);
+    let method = shot.method()?;
+    let lookups = u64::from(method.fetches().saturating_add(7)) * u64::from(across);
     let rows = (LOOKUPS / lookups).clamp(1, u64::from(down)) as u32;
     let mut words = Vec::new();
     for first in (0..down).step_by(rows as usize) {
         monitor.check()?;
-        words.extend(maps.samples(&pipeline, shot, first, rows.min(down - first))?);
+        words.extend(maps.samples(&pipeline, shot, method, first..down.min(first + rows))?);
     }
     let (samples, _) = words.as_chunks::<WORDS>();
     let split = |words: &[u32; WORDS]| {
@@ -81,9 +83,16 @@ impl Maps {
     }
 
     /// The words of some rows of samples.
-    fn samples(&self, pipeline: &OwnPipeline<'_>, shot: &Shot<'_>, first: u32, rows: u32) -> Result<Vec<u32>> {
+    fn samples(
+        &self,
+        pipeline: &OwnPipeline<'_>,
+        shot: &Shot<'_>,
+        method: ParallaxMethod,
+        rows: Range<u32>,
+    ) -> Result<Vec<u32>> {
         let across = shot.count[0];
-        let params = params(shot, first);
+        let params = params(shot, method, rows.start);
+        let rows = rows.len() as u32;
         // A NaN is no colour.
         let poison = vec![f32::NAN.to_bits(); WORDS * across as usize * rows as usize];
         let [heights, parallax, x, y, z] = self.0.each_ref().map(|(binding, words)| (*binding, words.as_slice()));
@@ -103,26 +112,13 @@ impl Maps {
 }
 
 /// The words of the kernel's parameters, in their order.
-fn params(shot: &Shot<'_>, first_row: u32) -> Vec<u32> {
+fn params(shot: &Shot<'_>, method: ParallaxMethod, first_row: u32) -> Vec<u32> {
     let (rays, look, material) = (shot.rays(), shot.look, shot.material);
-    let (method, steps, bisections, longest): (u32, u32, u32, f32) = match shot.method() {
-        ParallaxMethod::None => (0, 0, 0, 0.0),
-        ParallaxMethod::Welsh => (1, 0, 0, 0.0),
-        ParallaxMethod::Limited => (2, 0, 0, 0.0),
-        ParallaxMethod::Plane { limit } => (3, 0, 0, limit),
-        ParallaxMethod::Steps { k } => (4, k.get(), 0, 0.0),
-        ParallaxMethod::Relief { steps, bisections } => (5, steps, bisections, 0.0),
-    };
-    let texels = [material.size().width() as f32, material.size().height() as f32];
-    let step = match shot.method() {
-        ParallaxMethod::Steps { k } => step_scale(material.scale(), texels, k, 1.0),
-        _ => [0.0; 2],
-    };
     let vectors = [rays.eye, rays.ahead, rays.right, rays.down, look.light.direction(), look.low, look.high];
     let mut words: Vec<u32> = vectors.iter().flat_map(|&[x, y, z]| [x, y, z, 0.0]).map(f32::to_bits).collect();
-    words.extend(material.scale_in_uv().into_iter().chain(step).map(f32::to_bits));
+    words.extend(material.scale_in_uv().into_iter().chain(material.step(method)).map(f32::to_bits));
     words.extend([shot.count[0], shot.count[1], first_row, u32::from(shot.surface == Surface::Flat)]);
-    words.extend([method, steps, bisections, longest.to_bits()]);
+    words.extend(method.words());
     words.extend([look.ambient, look.highlight, look.shininess, rays.proportion].map(f32::to_bits));
     words
 }
@@ -139,20 +135,25 @@ mod tests {
 
     /// The kinds of the words of the kernel's parameters, in their order; gaps between members are none.
     fn kinds(module: &naga::Module) -> Vec<ScalarKind> {
-        let params = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some("Params")).unwrap().1;
-        let TypeInner::Struct { members, span } = &params.inner else { panic!("a struct") };
-        let mut kinds = Vec::new();
-        for member in members {
-            assert_eq!(member.offset as usize, 4 * kinds.len(), "{:?}", member.name);
-            let (count, kind) = match module.types[member.ty].inner {
-                TypeInner::Scalar(scalar) => (1, scalar.kind),
-                TypeInner::Vector { size, scalar } => (size as usize, scalar.kind),
-                ref other => panic!("{other:?}"),
-            };
-            kinds.resize(kinds.len() + count, kind);
+        let (params, _) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some("Params")).unwrap();
+        kinds_of(module, params)
+    }
+
+    fn kinds_of(module: &naga::Module, ty: naga::Handle<naga::Type>) -> Vec<ScalarKind> {
+        match &module.types[ty].inner {
+            TypeInner::Scalar(scalar) => vec![scalar.kind],
+            TypeInner::Vector { size, scalar } => vec![scalar.kind; *size as usize],
+            TypeInner::Struct { members, span } => {
+                let mut kinds = Vec::new();
+                for member in members {
+                    assert_eq!(member.offset as usize, 4 * kinds.len(), "{:?}", member.name);
+                    kinds.extend(kinds_of(module, member.ty));
+                }
+                assert_eq!(*span as usize, 4 * kinds.len());
+                kinds
+            }
+            other => panic!("{other:?}"),
         }
-        assert_eq!(*span as usize, 4 * kinds.len());
-        kinds
     }
 
     /// Parameters are told apart by their values: floats are none that an integer of a picture is.
@@ -172,16 +173,17 @@ mod tests {
         let options = BakeOptions { scale: Scale::texels(3), ..Default::default() };
         let material = Material::bake(&Baker::cpu(), &heights, &options).unwrap();
         let camera = Camera { elevation: 30.0, width: 0.5 };
-        let surface = Surface::Mapped(ParallaxMethod::Plane { limit: 3.0 });
+        let method = ParallaxMethod::Plane { limit: 3.0 };
+        let surface = Surface::Mapped(method);
         let shot = Shot { material: &material, surface, camera, look: Look::default(), count: [20, 10] };
         let is_float = |word: &u32| *word == 0 || f32::from_bits(*word).is_normal();
-        for (i, (word, kind)) in params(&shot, 5).iter().zip(kinds(&module)).enumerate() {
+        for (i, (word, kind)) in params(&shot, method, 5).iter().zip(kinds(&module)).enumerate() {
             let fits = match kind {
                 ScalarKind::Float => is_float(word),
                 _ => *word < 1 << 20,
             };
             assert!(fits, "word {i} is {word:#x}, a {kind:?}");
         }
-        assert_eq!(params(&shot, 5).len(), kinds(&module).len());
+        assert_eq!(params(&shot, method, 5).len(), kinds(&module).len());
     }
 }

@@ -6,7 +6,7 @@ use super::{Camera, Look, Picture, Renderer, Samples, Shot, Surface};
 use crate::error::Result;
 use crate::inspect::ramp::Ramp;
 use crate::material::{Material, ParallaxMethod};
-use crate::measure::Errors;
+use crate::measure::{Errors, distance};
 use crate::stream::Monitor;
 use plotters::style::FontStyle;
 
@@ -157,10 +157,8 @@ impl Sheet {
 
 /// How far each sample's offset is from the truth, in texels.
 fn errors(material: &Material, samples: &Samples, truth: &Samples) -> Vec<f32> {
-    let size = material.size();
-    let texels = [size.width() as f32, size.height() as f32];
-    let error = |(a, b): (&[f32; 2], &[f32; 2])| ((a[0] - b[0]) * texels[0]).hypot((a[1] - b[1]) * texels[1]);
-    samples.offsets.iter().zip(&truth.offsets).map(error).collect()
+    let texels = material.texels();
+    samples.offsets.iter().zip(&truth.offsets).map(|(&a, &b)| distance(a, b, texels)).collect()
 }
 
 /// Where everything is.

@@ -66,10 +66,13 @@ impl Shot<'_> {
     }
 
     /// What moves the texture coordinates; the truth is [`Material::truth`] of the shallowest ray.
-    pub fn method(&self) -> ParallaxMethod {
+    ///
+    /// # Errors
+    /// As [`Material::truth`].
+    pub fn method(&self) -> Result<ParallaxMethod> {
         match self.surface {
-            Surface::Flat => ParallaxMethod::None,
-            Surface::Mapped(method) => method,
+            Surface::Flat => Ok(ParallaxMethod::None),
+            Surface::Mapped(method) => Ok(method),
             Surface::Truth => self.material.truth(self.rays().shallowest()),
         }
     }
@@ -78,7 +81,7 @@ impl Shot<'_> {
     pub(super) fn check(&self) -> Result<()> {
         self.camera.check()?;
         self.count.iter().try_for_each(|&count| within("samples on a side", count, &SAMPLES))?;
-        check_method(self.method())
+        check_method(self.method()?)
     }
 
     /// The samples, computed on all cores.
@@ -88,7 +91,7 @@ impl Shot<'_> {
     /// [`crate::Error::Cancelled`] if `monitor` says so.
     pub fn on_cpu(&self, monitor: &Monitor) -> Result<Samples> {
         self.check()?;
-        let (rays, method, light) = (self.rays(), self.method(), self.look.light.direction());
+        let (rays, method, light) = (self.rays(), self.method()?, self.look.light.direction());
         let [across, down] = self.count;
         let row = |y| {
             monitor.check()?;

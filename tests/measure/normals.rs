@@ -3,8 +3,11 @@
 use super::{assert_near, clamped, quick};
 use crate::support::{FORMATS, Random, map_u8, map_u16, options, xy};
 use texbake::material::Texture;
-use texbake::measure::{MeasureOptions, TrueNormals};
-use texbake::{BakeOptions, Baker, Codes, CodesRef, Convention, Depth, Edges, Encoding, NormalFormat, NormalMap};
+use texbake::measure::{Errors, MeasureOptions, TrueNormals};
+use texbake::{
+    BakeOptions, Baker, Codes, CodesRef, Convention, Depth, Edges, Encoding, NormalFormat, NormalMap, ParallaxFormat,
+    ParallaxMap,
+};
 
 /// Rounding of f32 while a code is decoded: three operations on numbers up to 2.
 const DECODING: f64 = 3.0 / (1 << 24) as f64;
@@ -104,4 +107,34 @@ fn green_the_wrong_way_round_shows() {
     let CodesRef::U8(codes) = map.codes() else { unreachable!() };
     let misread = NormalMap::new(map.size(), FORMATS[0], Codes::U8(codes.to_vec())).unwrap();
     assert!(truth.errors(&Texture::of_normals(&misread, Edges::default())).mean > 10.0);
+}
+
+/// What a device leaves that writes nothing, or no numbers, is as wrong as can be.
+#[test]
+fn texels_without_a_direction_are_wrong() {
+    let heights = map_u8(16, 8, |_, _| 77);
+    let truth = TrueNormals::new(&heights, &MeasureOptions::default().bake).unwrap();
+    let format = |encoding, depth| NormalFormat { encoding, depth, ..FORMATS[0] };
+    let none = Errors { largest: 180.0, percentile_99: 180.0, mean: 180.0 };
+    for (format, codes) in [
+        (format(Encoding::Snorm, Depth::Bits8), Codes::U8(vec![0; 3 * 16 * 8])),
+        (format(Encoding::Biased, Depth::Bits8), Codes::U8(vec![128; 3 * 16 * 8])),
+        (format(Encoding::Float, Depth::Float32), Codes::F32(vec![0.0; 3 * 16 * 8])),
+        (format(Encoding::Float, Depth::Float32), Codes::F32(vec![f32::NAN; 3 * 16 * 8])),
+        (format(Encoding::Float, Depth::Float32), Codes::F32(vec![f32::INFINITY; 3 * 16 * 8])),
+    ] {
+        let map = NormalMap::new(heights.size(), format, codes).unwrap();
+        assert_eq!(truth.errors(&Texture::of_normals(&map, Edges::default())), none, "{format:?}");
+    }
+    // A single one of 128 shows.
+    let mut codes = [0.0, 0.0, 1.0].repeat(16 * 8);
+    codes[3 * 77 + 2] = f32::NAN;
+    let map = NormalMap::new(heights.size(), format(Encoding::Float, Depth::Float32), Codes::F32(codes)).unwrap();
+    assert_eq!(truth.errors(&Texture::of_normals(&map, Edges::default())).largest, 180.0);
+
+    let format = ParallaxFormat { encoding: Encoding::Float, depth: Depth::Float32 };
+    let mut codes = vec![2.0 * 77.0 / 255.0 - 1.0; 16 * 8];
+    codes[77] = f32::NAN;
+    let map = ParallaxMap::new(heights.size(), format, Codes::F32(codes)).unwrap();
+    assert_eq!(truth.parallax_errors(&Texture::of_parallax(&map, Edges::default())).largest, f64::INFINITY);
 }

@@ -98,9 +98,16 @@ fn steps_are_counted_and_can_be_stopped() {
 fn options_out_of_range_are_refused() {
     let heights = bumps();
     let measured = Measured { heights: &heights, detail: None, models: &[], devices: &[] };
-    for elevation in [0.0, 90.0, -1.0, f64::NAN] {
-        let options = MeasureOptions { elevation, ..Default::default() };
-        let error = measure(&measured, &options, &Monitor::default(), &mut |_| {}).unwrap_err().to_string();
-        assert_eq!(error, format!("elevation is {elevation}: it must be above 0 and below 90 degrees"));
+    let refused = |options| measure(&measured, &options, &Monitor::default(), &mut |_| {}).unwrap_err().to_string();
+    for elevation in [0.0, 0.99, 90.0, -1.0, f64::NAN] {
+        let error = refused(MeasureOptions { elevation, ..Default::default() });
+        assert_eq!(error, format!("elevation is {elevation}: it must be 1 degree or more, and below 90"));
     }
+    for runs in [0, 1001, usize::MAX] {
+        let error = refused(MeasureOptions { runs, ..Default::default() });
+        assert_eq!(error, format!("runs is {runs}: it must be from 1 to 1000"));
+    }
+    // A ray at 1 degree crosses cot 1 = 57.29 texels for each texel of the scale: 16 384 of 285.99.
+    let high = refused(MeasureOptions { elevation: 1.0, ..clamped("286") });
+    assert!(high.starts_with("scale in texels is 286: it must be at most 285 to be seen from 1"), "{high}");
 }

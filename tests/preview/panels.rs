@@ -77,7 +77,7 @@ fn the_wrong_convention_is_seen() {
     let CodesRef::U16(codes) = normals.codes() else { panic!("16 bits") };
     let misread = NormalMap::new(normals.size(), super::format(Convention::Gl), Codes::U16(codes.to_vec())).unwrap();
     let scale = options(Convention::Dx).scale.resolve(heights.size()).unwrap();
-    let material = |normals| Material::of_maps(&heights, normals, &parallax, scale, Default::default()).unwrap();
+    let material = |normals| Material::of_maps(&heights, normals, &parallax, scale, Default::default());
     let [right, wrong] =
         [&normals, &misread].map(|normals| from_above(&material(normals), NORMAL_MAPPED, plain(90.0)).colours);
     // Light from above: the upper face is bright, and dark if it seems to be the lower one.

@@ -200,6 +200,7 @@ fn a_kernel_that_differs_from_the_host_is_noticed() {
 #[test]
 fn every_file_under_kernels_is_registered() {
     let mut texts: Vec<String> = ALL.iter().map(KernelSource::text).collect();
+    texts.push(crate::measure::OFFSET_TIME.into());
     #[cfg(feature = "cli")]
     texts.push(crate::preview::gpu::WGSL.into());
     let mut files = 0;

@@ -137,7 +137,7 @@ impl Baked {
             }
         };
         let scale = options.scale.resolve(heights.size())?;
-        let material = Material::of_maps(&heights, &normals, &parallax, scale, options.edges)?;
+        let material = Material::of_maps(&heights, &normals, &parallax, scale, options.edges);
         Ok(Shown { material, name: self.stem, has_heights, has_parallax })
     }
 }
