@@ -102,7 +102,7 @@ fn options_out_of_range_are_errors() {
         (SheetOptions { surfaces: relief(9, 99), ..usual() }, "bisections is 99: it must be from 0 to 64"),
         (
             SheetOptions { elevations: vec![9.0; 1000], panel: [4096; 2], ..usual() },
-            "picture is 36930x8240050 pixels: it must be at most 268435456 pixels in all: take fewer panels, or smaller ones",
+            "picture is 36936x8266050 pixels: it must be at most 268435456 pixels in all: take fewer panels, or smaller ones",
         ),
     ] {
         let rendered = Sheet::render(&material, &options, &Renderer::cpu(), &Monitor::default());
