@@ -32,6 +32,10 @@ struct Params {
     shininess: f32,
     // The map's height.
     proportion: f32,
+    // What a map is of its texture, along each axis: 1, but of an axis that mirrors, which is there forth and back. Scale
+    // and step are of the texture.
+    share: vec2<f32>,
+    unused: vec2<f32>,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -62,7 +66,7 @@ fn preview(@builtin(global_invocation_id) id: vec3<u32>) {
     let place = 2.0 * (vec2<f32>(at) + 0.5) / vec2<f32>(params.count) - 1.0;
     let ray = params.ahead.xyz + (place.x * params.right.xyz + place.y * params.down.xyz);
     let met = params.eye.xyz - params.eye.z / ray.z * ray;
-    let uv = vec2<f32>(met.x, met.y / params.proportion);
+    let uv = vec2<f32>(met.x, met.y / params.proportion) * params.share;
     let v = -normalize(ray);
     let moved = parallax_offset(params.method, uv, v, params.scale, params.step);
 
@@ -77,6 +81,6 @@ fn preview(@builtin(global_invocation_id) id: vec3<u32>) {
     samples[index] = lit.x;
     samples[index + 1u] = lit.y;
     samples[index + 2u] = lit.z;
-    samples[index + 3u] = moved.x;
-    samples[index + 4u] = moved.y;
+    samples[index + 3u] = moved.x / params.share.x;
+    samples[index + 4u] = moved.y / params.share.y;
 }

@@ -1,4 +1,4 @@
-// Normal mapping without precomputed tangents: the cotangent frame of a pixel (Schüler, Followup: Normal Mapping Without
+// Normal mapping without precomputed tangents: the cotangent frame of a pixel (Schueler, Followup: Normal Mapping Without
 // Precomputed Tangents, 2013).
 //
 // n: the interpolated normal, of length one. dp1, dp2: differences of the position, or of the negated vector to the eye,
@@ -7,7 +7,7 @@
 // normal's slopes are multiplied by. They are right for skewed and mirrored mappings, keep the ratio of their lengths, and
 // the longer one is of length one: their scale does not matter. Where no direction is left both are zero.
 //
-// Schüler's T is the gradient times n . (dp1 x dp2), which is below zero where the differences turn the other way round:
+// Schueler's T is the gradient times n . (dp1 x dp2), which is below zero where the differences turn the other way round:
 // in WGSL dpdy goes down the framebuffer. Its sign is taken out here, so that any two directions give the same frame.
 //
 // without_perspective is his shortcut (dp1, dp2 in place of the vectors perpendicular to them): right where dp1 and dp2 are

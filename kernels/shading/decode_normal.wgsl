@@ -2,7 +2,7 @@
 //
 //   unorm    v = 2 s - 1                    s in [0, 1]: the sample of an unsigned channel (FGED2 section 7.6.1, Hegde)
 //   snorm    v = max(s, -1)                 s in [-1, 1]: the sample of a signed channel
-//   biased   v = s L'/L - (L + 1)/L         L = 127 or 32767, L' = 255 or 65535: Schüler's sign expansion, 255/127 and
+//   biased   v = s L'/L - (L + 1)/L         L = 127 or 32767, L' = 255 or 65535: Schueler's sign expansion, 255/127 and
 //                                           128/127, by which the code 128 is exactly 0; never below -1
 //   xy       z = sqrt(1 - x^2 - y^2)        eq. 7.44, listing 7.6; 0 where x and y are longer than 1
 //

@@ -7,7 +7,7 @@ use super::{View, Views};
 use crate::backend::gpu::{Binding, OwnPipeline};
 use crate::baker::Baker;
 use crate::error::Result;
-use crate::map::Size;
+use crate::map::{Edges, Size};
 use crate::material::{Material, ParallaxMethod};
 use half::f16;
 use std::time::Duration;
@@ -126,7 +126,7 @@ impl<'a> Scene<'a> {
             parallax,
             x,
             y,
-            (Binding::Sampler, &[]),
+            (Binding::Sampler(Edges::default()), &[]),
         ];
         let written = self.pipeline.run(&buffers, [count.div_ceil(64), 1, 1])?;
         Ok(written.into_iter().flatten().collect())

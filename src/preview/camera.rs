@@ -1,5 +1,7 @@
 //! Where a textured plane is looked at from.
 
+use super::limits::within;
+use crate::error::Result;
 use crate::material::Material;
 use crate::measure::View;
 use crate::vector::{add, normalized, times};
@@ -11,7 +13,7 @@ use crate::vector::{add, normalized, times};
 pub struct Camera {
     /// Degrees above the plane, from 5 to 90: 90 is straight from above.
     pub elevation: f32,
-    /// How much of the map's width the picture shows in its middle; 1 is all of it.
+    /// How much of the map's width the picture shows in its middle, from 1e-9 to 1e6; 1 is all of it.
     pub width: f32,
 }
 
@@ -37,6 +39,11 @@ pub struct Rays {
 }
 
 impl Camera {
+    pub(super) fn check(&self) -> Result<()> {
+        within("elevation", self.elevation, &(5.0..=90.0))?;
+        within("width", self.width, &(1e-9..=1e6))
+    }
+
     /// Its rays through the pixels of a picture of `count` pixels across and down.
     pub fn rays(&self, material: &Material, count: [u32; 2]) -> Rays {
         let [across, down] = count.map(|pixels| pixels as f32);

@@ -3,7 +3,7 @@
 use super::shot::{Samples, Shot, Surface};
 use crate::backend::gpu::{Binding, Gpu, OwnPipeline};
 use crate::error::Result;
-use crate::map::Edge;
+use crate::map::{Edge, Edges, Size};
 use crate::material::{ParallaxMethod, Texture};
 use crate::stream::Monitor;
 use half::f16;
@@ -27,10 +27,19 @@ const LOOKUPS: u64 = 1 << 26;
 /// Words for each sample: a colour and an offset.
 const WORDS: usize = 5;
 
-/// Whether the device's sampler does what a shot's maps need: it repeats.
+/// Whether the device's sampler does what a shot's maps need: it repeats and clamps, and maps that mirror are unfolded,
+/// which maps of several sizes are not alike.
 pub(super) fn can_take(shot: &Shot<'_>) -> bool {
-    let edges = shot.material.heights().edges();
-    edges.x == Edge::Wrap && edges.y == Edge::Wrap
+    let material = shot.material;
+    let edges = material.heights().edges();
+    let sizes = [material.normals().size(), material.parallax().size()];
+    ![edges.x, edges.y].contains(&Edge::Mirror) || sizes == [material.size(); 2]
+}
+
+/// Texels along an axis of a map on the device: one that mirrors goes forth and back between its borders, which are not
+/// repeated, and then repeats.
+fn unfolded(edge: Edge, texels: usize) -> usize {
+    if edge == Edge::Mirror { (2 * texels - 2).max(1) } else { texels }
 }
 
 /// Takes a shot.
@@ -39,7 +48,7 @@ pub(super) fn can_take(shot: &Shot<'_>) -> bool {
 /// [`crate::Error::Device`] if the device fails; [`crate::Error::Cancelled`].
 pub(super) fn take(gpu: &Gpu, shot: &Shot<'_>, wgsl: &str, monitor: &Monitor) -> Result<Samples> {
     let pipeline = gpu.untested().compile(wgsl, "preview", &[])?;
-    let maps = Maps::of(shot, gpu.untested().filters_floats());
+    let maps = Maps::of(shot, gpu.untested().filters_floats())?;
     let [across, down] = shot.count;
     let method = shot.method()?;
     let lookups = u64::from(method.fetches().saturating_add(7)) * u64::from(across);
@@ -63,23 +72,31 @@ struct Maps([(Binding, Vec<u32>); 5]);
 
 impl Maps {
     /// The maps of a shot; rounded to halves if the device filters nothing finer.
-    fn of(shot: &Shot<'_>, filters_floats: bool) -> Self {
-        fn words<const N: usize>(map: &Texture<N>, channel: usize, filters_floats: bool) -> (Binding, Vec<u32>) {
-            let word = |texel: &[f32; N]| match filters_floats {
-                true => texel[channel].to_bits(),
-                false => f16::from_f32(texel[channel]).to_f32().to_bits(),
+    fn of(shot: &Shot<'_>, filters_floats: bool) -> Result<Self> {
+        fn words<const N: usize>(
+            map: &Texture<N>,
+            channel: usize,
+            filters_floats: bool,
+        ) -> Result<(Binding, Vec<u32>)> {
+            let (edges, [width, height]) = (map.edges(), [map.size().width(), map.size().height()]);
+            let size = Size::new(unfolded(edges.x, width), unfolded(edges.y, height))?;
+            let place = |i: usize, texels: usize| if i < texels { i } else { 2 * texels - 2 - i };
+            let word = |i: usize| {
+                let (x, y) = (place(i % size.width(), width), place(i / size.width(), height));
+                let value = map.texels()[y * width + x][channel];
+                if filters_floats { value.to_bits() } else { f16::from_f32(value).to_f32().to_bits() }
             };
-            (Binding::Texture(map.size()), map.texels().iter().map(word).collect())
+            Ok((Binding::Texture(size), (0..size.texels()).map(word).collect()))
         }
         let material = shot.material;
         let normals = |channel| words(material.normals(), channel, filters_floats);
-        Self([
-            words(material.heights(), 0, filters_floats),
-            words(material.parallax(), 0, filters_floats),
-            normals(0),
-            normals(1),
-            normals(2),
-        ])
+        Ok(Self([
+            words(material.heights(), 0, filters_floats)?,
+            words(material.parallax(), 0, filters_floats)?,
+            normals(0)?,
+            normals(1)?,
+            normals(2)?,
+        ]))
     }
 
     /// The words of some rows of samples.
@@ -103,7 +120,7 @@ impl Maps {
             x,
             y,
             z,
-            (Binding::Sampler, &[]),
+            (Binding::Sampler(sampled(shot.material.heights().edges())), &[]),
             (Binding::ReadWrite, &poison),
         ];
         let written = pipeline.run(&buffers, [across.div_ceil(GROUP), rows.div_ceil(GROUP), 1])?;
@@ -111,15 +128,27 @@ impl Maps {
     }
 }
 
+/// The edges of maps that are unfolded.
+fn sampled(edges: Edges) -> Edges {
+    let sampled = |edge| if edge == Edge::Mirror { Edge::Wrap } else { edge };
+    Edges { x: sampled(edges.x), y: sampled(edges.y) }
+}
+
 /// The words of the kernel's parameters, in their order.
 fn params(shot: &Shot<'_>, method: ParallaxMethod, first_row: u32) -> Vec<u32> {
     let (rays, look, material) = (shot.rays(), shot.look, shot.material);
     let vectors = [rays.eye, rays.ahead, rays.right, rays.down, look.light.direction(), look.low, look.high];
     let mut words: Vec<u32> = vectors.iter().flat_map(|&[x, y, z]| [x, y, z, 0.0]).map(f32::to_bits).collect();
-    words.extend(material.scale_in_uv().into_iter().chain(material.step(method)).map(f32::to_bits));
+    let (edges, size) = (material.heights().edges(), material.size());
+    let share = |edge, texels: usize| texels as f32 / unfolded(edge, texels) as f32;
+    let share = [share(edges.x, size.width()), share(edges.y, size.height())];
+    let on_device = |offset: [f32; 2]| [0, 1].map(|axis| offset[axis] * share[axis]);
+    let scales = [on_device(material.scale_in_uv()), on_device(material.step(method))];
+    words.extend(scales.into_iter().flatten().map(f32::to_bits));
     words.extend([shot.count[0], shot.count[1], first_row, u32::from(shot.surface == Surface::Flat)]);
     words.extend(method.words());
     words.extend([look.ambient, look.highlight, look.shininess, rays.proportion].map(f32::to_bits));
+    words.extend([share[0], share[1], 0.0, 0.0].map(f32::to_bits));
     words
 }
 

@@ -12,6 +12,7 @@ mod camera;
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
 mod labels;
+mod limits;
 mod look;
 mod model_sheet;
 mod palette;

@@ -1,6 +1,7 @@
 //! A model that wears a material, beside its tangent space.
 
 use super::labels::{Anchor, Labels};
+use super::limits::{PANEL, check_method, check_pixels, within};
 use super::raster::{Canvas, Viewpoint};
 use super::worn::{Paint, Worn};
 use super::{Look, Picture};
@@ -8,7 +9,6 @@ use crate::error::Result;
 use crate::material::{Material, ParallaxMethod};
 use crate::stream::Monitor;
 use plotters::style::FontStyle;
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// What is on the picture of a model.
@@ -18,11 +18,11 @@ pub struct ModelSheetOptions {
     pub title: String,
     /// Panels, from the left.
     pub paints: Vec<Paint>,
-    /// Degrees around the model, counterclockwise seen from above: 0 looks at what faces z.
+    /// Degrees around the model, counterclockwise seen from above, from -360 to 360: 0 looks at what faces z.
     pub turn: f32,
     /// Degrees above the model, from -89 to 89.
     pub elevation: f32,
-    /// Width and height of a panel in pixels.
+    /// Width and height of a panel in pixels, from 16 to 4096.
     pub panel: u32,
     /// Light and colours; the light stays with the picture.
     pub look: Look,
@@ -72,14 +72,16 @@ impl Paint {
 /// Renders a model's meshes on the CPU, y upwards, side by side for each [`Paint`].
 ///
 /// # Errors
-/// [`crate::Error::Parameter`] if the picture has no pixels, or too many; [`crate::Error::Cancelled`] if `monitor` says so.
+/// [`crate::Error::Parameter`] if an option is outside its range, or the picture has too many pixels; [`crate::Error::Cancelled`] if `monitor` says so.
 pub fn model_sheet(
     meshes: &[Worn],
     material: &Material,
     options: &ModelSheetOptions,
     monitor: &Monitor,
 ) -> Result<Picture> {
+    options.check()?;
     let (side, columns) = (options.panel as usize, options.paints.len());
+    check_pixels([columns * side, side])?;
     let viewpoint = options.viewpoint(meshes);
     let paint = |&paint: &Paint| {
         let mut canvas = Canvas::new(side * SAMPLES, viewpoint, BACKGROUND);
@@ -89,8 +91,8 @@ pub fn model_sheet(
         }
         Picture::of_samples(canvas.colours(), side * SAMPLES, SAMPLES)
     };
-    let panels: Result<Vec<Picture>> = options.paints.par_iter().map(paint).collect();
-    let panels = panels?;
+    // One after another: samples take nine times the room of pixels.
+    let panels = options.paints.iter().map(paint).collect::<Result<Vec<Picture>>>()?;
     let rows = painted_rows(&panels, side);
     let size = [2 * MARGIN + columns * (side + GAP) - GAP.min(columns * GAP), 2 * MARGIN + TITLE + LINE + rows.len()];
     let mut picture = Picture::filled(size, PAPER)?;
@@ -120,6 +122,17 @@ fn painted_rows(panels: &[Picture], side: usize) -> Range<usize> {
 }
 
 impl ModelSheetOptions {
+    /// Fails if a number is outside its range.
+    fn check(&self) -> Result<()> {
+        within("panel", self.panel, &PANEL)?;
+        within("turn", self.turn, &(-360.0..=360.0))?;
+        within("elevation", self.elevation, &(-89.0..=89.0))?;
+        self.paints.iter().try_for_each(|paint| match paint {
+            Paint::Lit(method) => check_method(*method),
+            Paint::Vectors | Paint::Handedness | Paint::Tangents => Ok(()),
+        })
+    }
+
     fn viewpoint(&self, meshes: &[Worn]) -> Viewpoint {
         let points: Vec<[f32; 3]> = meshes.iter().flat_map(Worn::positions).collect();
         let (up, across) = self.elevation.to_radians().sin_cos();

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 /// A colour, and how many pixels have it.
 type Counted = ([u8; 3], u64);
 
-/// At most `count` colours, and which of them each colour of `pixels` becomes: those of cells of the colour space that are divided, the one
-/// with the largest sum of squared deviations first, at its mean along the channel that has most of it.
+/// At most `count` colours, and which of them each colour of `pixels` becomes: those of cells of the colour space that are
+/// divided, the one with the largest sum of squared deviations first, at its mean along the channel that has most of it.
 pub(super) fn divided(pixels: &[[u8; 3]], count: usize) -> (Vec<[u8; 3]>, BTreeMap<[u8; 3], u8>) {
     let mut all = BTreeMap::new();
     for pixel in pixels {

@@ -98,15 +98,17 @@ impl Renderer {
     /// Takes a shot.
     ///
     /// # Errors
-    /// [`Error::Device`] if a GPU fails for which the CPU does not take over, or its sampler cannot do the map's edges: it
-    /// repeats. [`Error::Cancelled`] if `monitor` says so.
+    /// [`Error::Parameter`] as [`Shot::on_cpu`]; [`Error::Device`] if a GPU fails for which the CPU does not take over, or maps that mirror are
+    /// not of one size: [`Error::Cancelled`] if `monitor` says so.
     pub fn take(&self, shot: &Shot<'_>, monitor: &Monitor) -> Result<Samples> {
+        shot.check()?;
         #[cfg(feature = "gpu")]
         if let Some(gpu) = &self.gpu {
             let taken = match gpu::can_take(shot) {
                 true => gpu::take(gpu, shot, &self.wgsl, monitor),
                 false => {
-                    Err(Error::device(self.name(), "it renders maps that wrap; use --backend cpu for other edges"))
+                    let reason = "it renders maps that mirror if all are of one size; use --backend cpu for these";
+                    Err(Error::device(self.name(), reason))
                 }
             };
             match taken {

@@ -1,6 +1,7 @@
 //! The ways to use a material side by side.
 
 use super::labels::{Anchor, Labels};
+use super::limits::{PANEL, check_method, check_pixels, within};
 use super::{Camera, Look, Picture, Renderer, Samples, Shot, Surface};
 use crate::error::Result;
 use crate::inspect::ramp::Ramp;
@@ -22,7 +23,7 @@ pub struct SheetOptions {
     pub width: Option<f32>,
     /// Error that is white, in texels; `None`: the longest offset that relief can have, in the middle of a panel.
     pub white: Option<f32>,
-    /// Width and height of a panel in pixels.
+    /// Width and height of a panel in pixels, each from 16 to 4096.
     pub panel: [u32; 2],
     /// Light and colours.
     pub look: Look,
@@ -52,8 +53,19 @@ impl SheetOptions {
         [Surface::Flat].into_iter().chain(mapped).chain([Surface::Truth]).collect()
     }
 
+    /// Fails if a number is outside its range.
+    fn check(&self, material: &Material) -> Result<()> {
+        self.panel.iter().try_for_each(|&side| within("panel", side, &PANEL))?;
+        self.elevations.iter().try_for_each(|&elevation| self.camera(material, elevation).check())?;
+        self.white.map_or(Ok(()), |white| within("error-max", white, &(1e-6..=1e9)))?;
+        self.surfaces.iter().try_for_each(|surface| match surface {
+            Surface::Mapped(method) => check_method(*method),
+            Surface::Flat | Surface::Truth => Ok(()),
+        })
+    }
+
     fn white(&self, material: &Material, elevation: f32) -> f32 {
-        // From straight above there is none.
+        // From straight above there is none: an eighth of the scale at least.
         let longest = highest(material) / 2.0 / elevation.to_radians().tan().min(4.0);
         // Of a map without relief every scale paints black.
         self.white.unwrap_or(if longest > 0.0 { longest } else { 1.0 })
@@ -105,12 +117,15 @@ impl Sheet {
     /// Renders a sheet.
     ///
     /// # Errors
-    /// [`crate::Error::Parameter`] if the picture has no pixels, or too many; [`crate::Error::Device`] if a GPU fails;
+    /// [`crate::Error::Parameter`] if an option is outside its range, or the picture has too many pixels, before anything
+    /// is rendered; [`crate::Error::Device`] if a GPU fails;
     /// [`crate::Error::Cancelled`] if `monitor` says so.
     pub fn render(material: &Material, options: &SheetOptions, renderer: &Renderer, monitor: &Monitor) -> Result<Self> {
+        options.check(material)?;
         let has_truth = options.surfaces.contains(&Surface::Truth);
-        let plan = Plan { options, has_truth };
-        let mut picture = Picture::filled(plan.size(), PAPER)?;
+        let layout = Layout { options, has_truth };
+        check_pixels(layout.size())?;
+        let mut picture = Picture::filled(layout.size(), PAPER)?;
         let mut told = Vec::new();
         for (row, &elevation) in options.elevations.iter().enumerate() {
             let white = options.white(material, elevation);
@@ -125,17 +140,17 @@ impl Sheet {
                     (Surface::Truth, Some(truth)) => truth.clone(),
                     _ => take(surface)?,
                 };
-                picture.paste(&plan.pixels(&samples)?, plan.panel(row, column));
+                picture.paste(&layout.pixels(&samples)?, layout.panel(row, column));
                 let Some(truth) = &truth else { continue };
                 let errors = errors(material, &samples, truth);
                 match surface {
-                    Surface::Flat => picture.paste(&plan.ramp()?, plan.legend(row, column)),
-                    _ => picture.paste(&plan.heat(&errors, white)?, plan.heat_panel(row, column)),
+                    Surface::Flat => picture.paste(&layout.ramp()?, layout.legend(row, column)),
+                    _ => picture.paste(&layout.heat(&errors, white)?, layout.heat_panel(row, column)),
                 }
                 told.push(Told { elevation, surface, errors: Errors::of(errors) });
             }
         }
-        plan.label(material, &mut picture, &told)?;
+        layout.label(material, &mut picture, &told)?;
         Ok(Self { picture, told })
     }
 }
@@ -147,12 +162,12 @@ fn errors(material: &Material, samples: &Samples, truth: &Samples) -> Vec<f32> {
 }
 
 /// Where everything is.
-struct Plan<'a> {
+struct Layout<'a> {
     options: &'a SheetOptions,
     has_truth: bool,
 }
 
-impl Plan<'_> {
+impl Layout<'_> {
     fn panel_size(&self) -> [usize; 2] {
         self.options.panel.map(|pixels| pixels as usize)
     }

@@ -1,6 +1,7 @@
 //! One look at a plane.
 
 use super::camera::{Camera, Rays};
+use super::limits::{SAMPLES, check_method, within};
 use super::look::Look;
 use crate::error::Result;
 use crate::material::{Material, ParallaxMethod};
@@ -45,7 +46,7 @@ pub struct Shot<'a> {
     pub camera: Camera,
     /// Light and colours.
     pub look: Look,
-    /// Samples across and down.
+    /// Samples across and down, each from 1 to 8192.
     pub count: [u32; 2],
 }
 
@@ -76,11 +77,20 @@ impl Shot<'_> {
         }
     }
 
+    /// Fails if a number is outside its range.
+    pub(super) fn check(&self) -> Result<()> {
+        self.camera.check()?;
+        self.count.iter().try_for_each(|&count| within("samples on a side", count, &SAMPLES))?;
+        check_method(self.method()?)
+    }
+
     /// The samples, computed on all cores.
     ///
     /// # Errors
+    /// [`crate::Error::Parameter`] if elevation, width, count or steps are outside their ranges;
     /// [`crate::Error::Cancelled`] if `monitor` says so.
     pub fn on_cpu(&self, monitor: &Monitor) -> Result<Samples> {
+        self.check()?;
         let (rays, method, light) = (self.rays(), self.method()?, self.look.light.direction());
         let [across, down] = self.count;
         let row = |y| {

@@ -18,8 +18,14 @@ const SCALE: i32 = 8;
 
 /// 16-bit heights of (x, y) in [0, 1], at the centres of texels.
 fn heights(height: impl Fn(f64, f64) -> f64) -> HeightMap {
-    let at = |i: usize| (i as f64 + 0.5) / SIDE as f64;
-    Grid::from_fn(SIDE, SIDE, |x, y| (65_535.0 * height(at(x), at(y)).clamp(0.0, 1.0)).round() as u16).unwrap().into()
+    heights_of([SIDE; 2], height)
+}
+
+/// The same of a map of any width and height.
+fn heights_of([width, height]: [usize; 2], of: impl Fn(f64, f64) -> f64) -> HeightMap {
+    let at = |i: usize, texels: usize| (i as f64 + 0.5) / texels as f64;
+    let code = |x, y| (65_535.0 * of(at(x, width), at(y, height)).clamp(0.0, 1.0)).round() as u16;
+    Grid::from_fn(width, height, code).unwrap().into()
 }
 
 /// A pyramid with its top in the middle: one code in 65535 for each face's slope.
@@ -50,6 +56,13 @@ fn options(convention: Convention) -> BakeOptions {
 
 fn material(heights: &HeightMap, convention: Convention) -> Material {
     Material::bake(&Baker::cpu(), heights, &options(convention)).unwrap()
+}
+
+/// Gentle hills of 64 x 16 texels over a plane of 2 x 1, so that a height is 8 texels along x and 4 along y.
+fn wide() -> Material {
+    let hills = heights_of([SIDE, 16], |x, y| 0.5 + 0.2 * (TAU * x).sin() + 0.12 * (TAU * (x + y)).cos());
+    let scale = Scale::physical(2.into(), 1.into(), "0.25".parse().unwrap());
+    Material::bake(&Baker::cpu(), &hills, &BakeOptions { scale, ..options(Convention::Gl) }).unwrap()
 }
 
 /// White, without highlights.

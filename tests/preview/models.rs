@@ -146,4 +146,17 @@ fn a_model_sheet_has_a_panel_for_each_paint() {
     let cancelled = Monitor::default();
     cancelled.cancel();
     assert!(matches!(sheet(vec![LIT], &cancelled), Err(texbake::Error::Cancelled)));
+    let usual = ModelSheetOptions::default;
+    for (options, expected) in [
+        (ModelSheetOptions { panel: 1_000_000, ..usual() }, "panel is 1000000: it must be from 16 to 4096"),
+        (ModelSheetOptions { elevation: 90.0, ..usual() }, "elevation is 90: it must be from -89 to 89"),
+        (ModelSheetOptions { turn: f32::NAN, ..usual() }, "turn is NaN: it must be from -360 to 360"),
+        (
+            ModelSheetOptions { paints: vec![LIT; 17], panel: 4096, ..usual() },
+            "picture is 69632x4096 pixels: it must be at most 268435456 pixels in all: take fewer panels, or smaller ones",
+        ),
+    ] {
+        let drawn = model_sheet(&[worn(&square())], &hills, &options, &Monitor::default());
+        assert_eq!(drawn.unwrap_err().to_string(), expected);
+    }
 }

@@ -1,6 +1,6 @@
 //! Single looks at a plane, beside closed forms and rays in f64.
 
-use super::{SCALE, SIDE, from_above, heights, hills, material, options, plain, pyramid};
+use super::{SCALE, SIDE, from_above, heights, hills, material, options, plain, pyramid, wide};
 use texbake::material::{Material, ParallaxMethod};
 use texbake::preview::{Camera, Look, Shot, Surface};
 use texbake::stream::Monitor;
@@ -94,14 +94,14 @@ fn a_flat_surface_has_one_colour() {
     assert!(mapped.iter().any(|colour| *colour != mapped[0]));
 }
 
-/// The pixel's ray in f64, from where the eye is: above the middle, to the south of it.
-fn ray(camera: Camera, count: [u32; 2], x: u32, y: u32) -> ([f64; 2], [f64; 3]) {
+/// The pixel's ray in f64, from where the eye is: above the middle of a plane of width 1, to the south of it.
+fn ray(camera: Camera, count: [u32; 2], height: f64, x: u32, y: u32) -> ([f64; 2], [f64; 3]) {
     let elevation = f64::from(camera.elevation).to_radians();
     let half_field = 8f64.min(f64::from(camera.elevation) / 2.0).to_radians();
     let [across, down] = count.map(f64::from);
     let (half_height, half_width) = (half_field.tan(), half_field.tan() * across / down);
     let distance = f64::from(camera.width) / 2.0 / half_width;
-    let eye = [0.5, 0.5 + distance * elevation.cos(), distance * elevation.sin()];
+    let eye = [0.5, 0.5 * height + distance * elevation.cos(), distance * elevation.sin()];
     let (right, up) = (2.0 * (f64::from(x) + 0.5) / across - 1.0, 1.0 - 2.0 * (f64::from(y) + 0.5) / down);
     // Ahead, and up as the camera has it: at right angles to ahead.
     let ray = [
@@ -111,15 +111,18 @@ fn ray(camera: Camera, count: [u32; 2], x: u32, y: u32) -> ([f64; 2], [f64; 3]) 
     ];
     let t = -eye[2] / ray[2];
     let length = ray.iter().map(|part| part * part).sum::<f64>().sqrt();
-    ([eye[0] + t * ray[0], eye[1] + t * ray[1]], ray.map(|part| -part / length))
+    ([eye[0] + t * ray[0], (eye[1] + t * ray[1]) / height], ray.map(|part| -part / length))
 }
 
 /// Offsets of a panel are those of each pixel's ray. The ray is a few roundings of a distance of 4 widths off, 2^-24 each:
 /// less than 1e-4 texels. A hill rises by less than 0.5 in that, and the longest offsets are 3 times a height.
 #[test]
 fn offsets_are_those_of_each_rays_eye() {
-    let material = material(&hills(), Convention::Gl);
-    for elevation in [90.0, 60.0, 25.0] {
+    let square = material(&hills(), Convention::Gl);
+    for (material, height, elevation) in [(&square, 1.0), (&wide(), 0.5)]
+        .into_iter()
+        .flat_map(|(material, height)| [90.0, 60.0, 25.0].map(|elevation| (material, height, elevation)))
+    {
         let (camera, count) = (Camera { elevation, width: 0.8 }, [30, 24]);
         for method in [
             ParallaxMethod::Welsh,
@@ -130,12 +133,14 @@ fn offsets_are_those_of_each_rays_eye() {
             ParallaxMethod::Relief { steps: 512, bisections: 16 },
         ] {
             let surface = Surface::Mapped(method);
-            let shot = Shot { material: &material, surface, camera, look: Look::default(), count };
+            let shot = Shot { material, surface, camera, look: Look::default(), count };
             let offsets = shot.on_cpu(&Monitor::default()).unwrap().offsets;
             for (i, offset) in offsets.iter().enumerate() {
-                let (uv, eye) = ray(camera, count, i as u32 % 30, i as u32 / 30);
+                let (uv, eye) = ray(camera, count, height, i as u32 % 30, i as u32 / 30);
                 let expected = material.offset(method, uv.map(|part| part as f32), eye.map(|part| part as f32));
-                let texels = SIDE as f32 * (offset[0] - expected[0]).hypot(offset[1] - expected[1]);
+                let size = material.size();
+                let [x, y] = [size.width() as f32, size.height() as f32];
+                let texels = (x * (offset[0] - expected[0])).hypot(y * (offset[1] - expected[1]));
                 assert!(texels < 1e-3, "{method} from {elevation}, {i}: {offset:?}, not {expected:?}");
             }
         }

@@ -3,7 +3,7 @@
 use super::{SCALE, hills, material, pyramid};
 use texbake::Convention;
 use texbake::material::ParallaxMethod;
-use texbake::preview::{Look, Renderer, Sheet, SheetOptions, Surface, Told};
+use texbake::preview::{Camera, Look, Renderer, Sheet, SheetOptions, Shot, Surface, Told};
 use texbake::stream::Monitor;
 
 fn render(options: &SheetOptions) -> Sheet {
@@ -80,4 +80,37 @@ fn pictures_are_repeatable_and_a_cancelled_one_is_none() {
     let cancelled = Monitor::default();
     cancelled.cancel();
     assert!(matches!(render(&cancelled), Err(texbake::Error::Cancelled)));
+}
+
+/// What a picture cannot be made of is said before anything is rendered.
+#[test]
+fn options_out_of_range_are_errors() {
+    let material = material(&hills(), Convention::Gl);
+    let usual = SheetOptions::default;
+    let steps = vec![Surface::Mapped(ParallaxMethod::steps(u32::MAX))];
+    let relief = |steps, bisections| vec![Surface::Mapped(ParallaxMethod::Relief { steps, bisections })];
+    for (options, expected) in [
+        (SheetOptions { panel: [0, 64], ..usual() }, "panel is 0: it must be from 16 to 4096"),
+        (SheetOptions { panel: [64, 0], ..usual() }, "panel is 0: it must be from 16 to 4096"),
+        (SheetOptions { panel: [64, u32::MAX], ..usual() }, "panel is 4294967295: it must be from 16 to 4096"),
+        (SheetOptions { elevations: vec![60.0, f32::NAN], ..usual() }, "elevation is NaN: it must be from 5 to 90"),
+        (SheetOptions { elevations: vec![91.0], ..usual() }, "elevation is 91: it must be from 5 to 90"),
+        (SheetOptions { width: Some(0.0), ..usual() }, "width is 0: it must be from 0.000000001 to 1000000"),
+        (SheetOptions { white: Some(f32::NAN), ..usual() }, "error-max is NaN: it must be from 0.000001 to 1000000000"),
+        (SheetOptions { surfaces: steps, ..usual() }, "iterations is 4294967295: it must be from 1 to 65536"),
+        (SheetOptions { surfaces: relief(u32::MAX, 9), ..usual() }, "steps is 4294967295: it must be from 1 to 65536"),
+        (SheetOptions { surfaces: relief(9, 99), ..usual() }, "bisections is 99: it must be from 0 to 64"),
+        (
+            SheetOptions { elevations: vec![9.0; 1000], panel: [4096; 2], ..usual() },
+            "picture is 36936x8266050 pixels: it must be at most 268435456 pixels in all: take fewer panels, or smaller ones",
+        ),
+    ] {
+        let rendered = Sheet::render(&material, &options, &Renderer::cpu(), &Monitor::default());
+        assert_eq!(rendered.unwrap_err().to_string(), expected);
+    }
+    let camera = Camera { elevation: 60.0, width: 1.0 };
+    let shot = Shot { material: &material, surface: Surface::Flat, camera, look: Look::default(), count: [8193, 1] };
+    let expected = "samples on a side is 8193: it must be from 1 to 8192";
+    assert_eq!(shot.on_cpu(&Monitor::default()).unwrap_err().to_string(), expected);
+    assert_eq!(Renderer::cpu().take(&shot, &Monitor::default()).unwrap_err().to_string(), expected);
 }

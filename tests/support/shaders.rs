@@ -2,8 +2,8 @@
 
 use super::every_baker;
 use std::sync::OnceLock;
-use texbake::Size;
 use texbake::verify::{Binding, KernelComparison, OwnKernel, Subject, Tolerance, Work};
+use texbake::{Edges, Size};
 
 /// A function of the shader library, and a call of it.
 #[derive(Debug, Clone, Copy)]
@@ -52,7 +52,7 @@ impl ShaderFunction<'_> {
             vec![f32::NAN.to_bits(); N * calls.len()],
         ];
         if let Some(Texels { size, values }) = self.texture {
-            bindings.extend([Binding::Texture(*size), Binding::Sampler]);
+            bindings.extend([Binding::Texture(*size), Binding::Sampler(Edges::default())]);
             buffers.extend([words(&mut values.iter().copied()), vec![]]);
         }
         let kernel = OwnKernel { wgsl: &text, entry_point: "call", constants: &[], bindings: &bindings };

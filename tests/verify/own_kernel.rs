@@ -1,8 +1,8 @@
 //! Somebody else's kernel and its twin.
 
 use crate::support::{Random, every_baker};
-use texbake::Size;
 use texbake::verify::{Binding, OwnKernel, Subject, Tolerance, Work};
+use texbake::{Edge, Edges, Size};
 
 const SQUARES: OwnKernel<'static> = OwnKernel {
     wgsl: "
@@ -102,11 +102,7 @@ fn step(@builtin(global_invocation_id) id: vec3<u32>) { next[id.x] = a[id.x] + 2
     }
 }
 
-/// A rectangle of 4 x 2 texels, sampled at their middles, between them, and beyond the edges.
-#[test]
-fn textures_are_filtered_and_repeat() {
-    let kernel = OwnKernel {
-        wgsl: "
+const LOOKS: &str = "
 @group(0) @binding(0) var map: texture_2d<f32>;
 @group(0) @binding(1) var linear: sampler;
 @group(0) @binding(2) var<storage, read> uv: array<vec2<f32>>;
@@ -114,11 +110,23 @@ fn textures_are_filtered_and_repeat() {
 @compute @workgroup_size(1)
 fn look(@builtin(global_invocation_id) id: vec3<u32>) {
     heights[id.x] = textureSampleLevel(map, linear, uv[id.x] / vec2<f32>(4.0, 2.0), 0.0).r;
-}",
-        entry_point: "look",
-        constants: &[],
-        bindings: &[Binding::Texture(Size::new(4, 2).unwrap()), Binding::Sampler, Binding::Read, Binding::ReadWrite],
-    };
+}";
+
+/// Looks at a rectangle of 4 x 2 texels.
+fn looks(bindings: &[Binding]) -> OwnKernel<'_> {
+    OwnKernel { wgsl: LOOKS, entry_point: "look", constants: &[], bindings }
+}
+
+/// The same with the sampler of these edges.
+fn bindings(x: Edge, y: Edge) -> [Binding; 4] {
+    [Binding::Texture(Size::new(4, 2).unwrap()), Binding::Sampler(Edges { x, y }), Binding::Read, Binding::ReadWrite]
+}
+
+/// Sampled at the middles of texels, between them, and beyond the borders.
+#[test]
+fn textures_are_filtered_and_repeat() {
+    let bindings = bindings(Edge::Wrap, Edge::Wrap);
+    let kernel = looks(&bindings);
     let words = |floats: &[f32]| -> Vec<u32> { floats.iter().map(|float| float.to_bits()).collect() };
     let texels = [0.0, 1.0, 2.0, 3.0, 10.0, 20.0, 30.0, -40.0];
     let places = [[0.5, 0.5], [3.5, 1.5], [2.0, 0.5], [0.5, 1.0], [2.0, 1.0], [4.0, 0.5], [-0.5, 2.5], [0.75, 0.5]];
@@ -155,6 +163,34 @@ fn look(@builtin(global_invocation_id) id: vec3<u32>) {
         }
         // The device is none the worse for it.
         assert!(compare(&work, &heights).unwrap().passed());
+    }
+}
+
+/// Beyond the borders there is the border texel, along the axis that clamps.
+#[test]
+fn textures_clamp() {
+    let words = |floats: &[f32]| -> Vec<u32> { floats.iter().map(|float| float.to_bits()).collect() };
+    let texels = [0.0, 1.0, 2.0, 3.0, 10.0, 20.0, 30.0, -40.0];
+    let places = [[4.0, 0.5], [9.0, 1.5], [-0.5, 2.5], [0.5, 3.0], [2.0, -1.0]];
+    for (x, y, heights) in [
+        (Edge::Clamp, Edge::Wrap, [3.0, -40.0, 0.0, 5.0, 13.25]),
+        (Edge::Wrap, Edge::Clamp, [1.5, 15.0, -40.0, 10.0, 1.5]),
+        (Edge::Clamp, Edge::Clamp, [3.0, -40.0, 10.0, 10.0, 1.5]),
+    ] {
+        let poison = vec![f32::NAN.to_bits(); places.len()];
+        let work = Work {
+            buffers: vec![words(&texels), vec![], words(places.as_flattened()), poison],
+            workgroups: [places.len() as u32, 1, 1],
+        };
+        for gpu in gpus() {
+            let compare = |bindings: &[Binding]| {
+                gpu.compare(&looks(bindings), &|_: &Work| vec![words(&heights)], &work, Tolerance::Bits)
+            };
+            let comparison = compare(&bindings(x, y)).unwrap();
+            assert!(comparison.passed(), "{}, {x} and {y}: {comparison:?}", gpu.name());
+            let error = compare(&bindings(x, Edge::Mirror)).unwrap_err().to_string();
+            assert_eq!(error, format!("edges of a sampler is {x},mirror: it must be wrap or clamp, for each axis"));
+        }
     }
 }
 

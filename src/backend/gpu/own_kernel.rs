@@ -3,7 +3,7 @@
 use super::device::Device;
 use super::transfer::Mapping;
 use crate::error::{Error, Result};
-use crate::map::Size;
+use crate::map::{Edge, Edges, Size};
 use half::f16;
 use std::borrow::Cow;
 use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
@@ -23,11 +23,12 @@ pub enum Binding {
     ReadWrite,
     /// `texture_2d<f32>` of one level and one channel, which reads as r: a word is the f32 of a texel, row by row.
     Texture(Size),
-    /// `sampler`: linear between texels, repeating beyond the edges. It has no words.
+    /// `sampler`: linear between texels, and beyond the borders as the edges say, which wrap or clamp: the mirror of a
+    /// sampler repeats the border texel, and that of [`Edge`] does not. It has no words.
     ///
     /// Where the device does not filter textures of f32, or wgpu does not know that it does (on desktop OpenGL), a kernel
     /// with a sampler has textures of f16, and their texels must be such: no value is changed.
-    Sampler,
+    Sampler(Edges),
 }
 
 impl Binding {
@@ -38,7 +39,10 @@ impl Binding {
                 let range = format!("{}, the texels of {size}", size.texels());
                 Err(Error::parameter("words of a texture", words, range))
             }
-            Self::Sampler if words > 0 => Err(Error::parameter("words of a sampler", words, "0")),
+            Self::Sampler(_) if words > 0 => Err(Error::parameter("words of a sampler", words, "0")),
+            Self::Sampler(edges) if [edges.x, edges.y].contains(&Edge::Mirror) => {
+                Err(Error::parameter("edges of a sampler", edges, "wrap or clamp, for each axis"))
+            }
             _ => Ok(()),
         }
     }
@@ -92,12 +96,12 @@ impl<'a> OwnPipeline<'a> {
     /// Runs it on buffers of words, bound in their order in group 0, and gives the words of those that it may write.
     ///
     /// # Errors
-    /// [`crate::Error::Parameter`] if a texture has not a word for each texel, or a sampler has any;
+    /// [`crate::Error::Parameter`] if a texture has not a word for each texel, or a sampler has any, or mirrors;
     /// [`crate::Error::Device`] if the buffers do not fit the kernel, the device does not filter what a texture holds, or
     /// it fails.
     pub fn run(&self, buffers: &[(Binding, &[u32])], workgroups: [u32; 3]) -> Result<Vec<Vec<u32>>> {
         buffers.iter().try_for_each(|(binding, words)| binding.check_words(words.len()))?;
-        let is_filtered = buffers.iter().any(|(binding, _)| *binding == Binding::Sampler);
+        let is_filtered = buffers.iter().any(|(binding, _)| matches!(binding, Binding::Sampler(_)));
         let device = &self.device.device;
         let (downloads, submission) = self.device.guarded(|| {
             let upload = |&(binding, words): &(Binding, &[u32])| self.upload(binding, words, is_filtered);
@@ -141,6 +145,7 @@ impl<'a> OwnPipeline<'a> {
             downloads.iter().map(words).collect()
         })
     }
+
     fn upload(&self, binding: Binding, words: &[u32], is_filtered: bool) -> Result<Bound> {
         let device = &self.device.device;
         let usage = match binding {
@@ -148,7 +153,7 @@ impl<'a> OwnPipeline<'a> {
             Binding::Read => BufferUsages::STORAGE,
             Binding::ReadWrite => BufferUsages::STORAGE | BufferUsages::COPY_SRC,
             Binding::Texture(size) => return self.texture(size, words, is_filtered).map(Bound::Texture),
-            Binding::Sampler => return Ok(Bound::Sampler(device.create_sampler(&SAMPLER))),
+            Binding::Sampler(edges) => return Ok(Bound::Sampler(device.create_sampler(&sampler(edges)))),
         };
         let contents = bytemuck::cast_slice(words);
         let buffer = device.create_buffer_init(&BufferInitDescriptor { label: Some("words"), contents, usage });
@@ -173,13 +178,17 @@ impl<'a> OwnPipeline<'a> {
     }
 }
 
-const SAMPLER: wgpu::SamplerDescriptor<'static> = {
-    let (address, filter) = (wgpu::AddressMode::Repeat, wgpu::FilterMode::Linear);
+fn sampler(edges: Edges) -> wgpu::SamplerDescriptor<'static> {
+    let address = |edge| match edge {
+        Edge::Clamp => wgpu::AddressMode::ClampToEdge,
+        Edge::Wrap | Edge::Mirror => wgpu::AddressMode::Repeat,
+    };
+    let filter = wgpu::FilterMode::Linear;
     wgpu::SamplerDescriptor {
-        label: Some("linear, repeating"),
-        address_mode_u: address,
-        address_mode_v: address,
-        address_mode_w: address,
+        label: Some("linear"),
+        address_mode_u: address(edges.x),
+        address_mode_v: address(edges.y),
+        address_mode_w: wgpu::AddressMode::Repeat,
         mag_filter: filter,
         min_filter: filter,
         mipmap_filter: wgpu::MipmapFilterMode::Nearest,
@@ -189,7 +198,7 @@ const SAMPLER: wgpu::SamplerDescriptor<'static> = {
         anisotropy_clamp: 1,
         border_color: None,
     }
-};
+}
 
 fn texture(size: Size, format: TextureFormat) -> wgpu::TextureDescriptor<'static> {
     // A size has at most 2^31 - 1 texels on a side; what is too large for the device is its error.

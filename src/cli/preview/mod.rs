@@ -150,10 +150,16 @@ fn shown(arguments: &PreviewArguments, monitor: &Monitor) -> Result<Exit, Failur
         None => {
             let renderer = renderer(&arguments.settings)?;
             let sheet = Sheet::render(&shown.material, &arguments.sheet_options(&shown), &renderer, monitor)?;
-            if let Some(reason) = renderer.fallback().filter(|_| !arguments.quiet) {
-                say(format_args!("warning: {reason}; the CPU did it instead"));
-            }
-            (sheet.picture, Some(sheet.told), format!("{} ({})", renderer.name(), renderer.reason()))
+            let place = match renderer.fallback() {
+                Some(reason) => {
+                    if !arguments.quiet {
+                        say(format_args!("warning: {reason}; the CPU did it instead"));
+                    }
+                    format!("cpu, in place of {}", renderer.name())
+                }
+                None => format!("{} ({})", renderer.name(), renderer.reason()),
+            };
+            (sheet.picture, Some(sheet.told), place)
         }
     };
     create_folder_of(&arguments.output)?;

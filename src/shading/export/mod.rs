@@ -92,9 +92,7 @@ impl ShaderFile {
 
     fn include(&self, language: ShaderLanguage, functions: &str) -> String {
         let guard = format!("TEXBAKE_{}", self.name.to_uppercase());
-        // Some compilers read ASCII alone, comments too.
-        let header = self.header().replace('ü', "ue");
-        let (title, notes) = (self.title(language), language.notes());
+        let (title, notes, header) = (self.title(language), language.notes(), self.header());
         format!("{title}{notes}//\n{header}\n\n#ifndef {guard}\n#define {guard}\n\n{}\n\n#endif\n", functions.trim())
     }
 }
