@@ -19,6 +19,13 @@ pub struct Found {
     pub size: String,
 }
 
+impl Found {
+    /// Its path below the folder that was searched, which globs match.
+    pub fn relative(&self) -> PathBuf {
+        self.folder.join(self.path.file_name().unwrap_or_default())
+    }
+}
+
 /// What makes a file in a folder a height map: a suffix after its stem, with or without `_2k` or the like behind it,
 /// in any case, and the extension of a format that can be read.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -23,6 +23,8 @@
 
 mod blend;
 mod discovery;
+#[cfg(feature = "cli")]
+mod glob;
 mod heights;
 mod job;
 mod mask;
@@ -37,6 +39,8 @@ mod targets;
 
 pub use blend::{BlendJob, BlendOutcome, BlendReport, FormatReport, LayerFacts, LayerReport, UsedWeights};
 pub use discovery::{Found, Search};
+#[cfg(feature = "cli")]
+pub use glob::FileGlob;
 pub use job::{Event, Job, run};
 pub use mask::MaskInput;
 pub use naming::{MapKind, NameTemplate, OUTPUT_EXTENSIONS};

@@ -33,15 +33,15 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     }
     let (jobs, left_out) = jobs(arguments, config.as_ref(), &found)?;
     let check = arguments.check_plan.map(|_| PlanCheck::new(config.as_ref(), &found, &jobs)).transpose()?;
+    let monitor = interruptible();
     if let (Some(check), Some(CheckPlan::Only)) = (&check, arguments.check_plan) {
-        return check.run(reporting.quiet);
+        return check.run(reporting.quiet, &monitor);
     }
     let settings = config.as_ref().map(|config| config.path.as_path());
     let files = Job::all_files(&jobs);
     let report_file = reporting.report.as_deref().map(|path| JsonFile::create("report", path, &files, settings));
     let report_file = report_file.transpose()?;
 
-    let monitor = interruptible();
     let at_once = arguments.jobs.map_or_else(usual_jobs, NonZeroUsize::get);
     let inputs: Vec<&Path> = jobs.iter().map(|job| job.input.as_path()).collect();
     let progress = Progress::new(&inputs, &monitor, Verbosity::of(reporting, Verbosity::Files));
@@ -60,14 +60,14 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     if let Some(file) = report_file {
         file.write(&report)?;
     }
-    let is_broken = match &check {
-        // What failed is told; what was interrupted is not to be measured.
-        Some(check) if report.totals.baked == jobs.len() => check.run(reporting.quiet)? == Exit::Failed,
-        _ => false,
-    };
-    Ok(match report.totals {
-        totals if totals.stopped + totals.not_begun > 0 => Exit::Interrupted,
-        totals if totals.failed > 0 || !errors.is_empty() || is_broken => Exit::Failed,
+    Ok(match (report.totals, &check) {
+        (totals, _) if totals.stopped + totals.not_begun > 0 => Exit::Interrupted,
+        (totals, _) if totals.failed > 0 => Exit::Failed,
+        (_, Some(check)) => match check.run(reporting.quiet, &monitor)? {
+            Exit::Success if !errors.is_empty() => Exit::Failed,
+            checked => checked,
+        },
+        _ if !errors.is_empty() => Exit::Failed,
         _ => Exit::Success,
     })
 }
@@ -145,7 +145,7 @@ fn jobs<'a>(
     let mut bakers = HashMap::new();
     let (mut jobs, mut left_out) = (Vec::new(), Vec::new());
     for map in found {
-        let below = config.map_or_else(PerFile::default, |config| config.settings(&relative(map)));
+        let below = config.map_or_else(PerFile::default, |config| config.settings(&map.relative()));
         let choose = |settings| Chosen::new(settings, map, &arguments.out);
         let chosen = choose(&arguments.each.clone().or(&below)).map_err(|error| {
             // Where the command line alone would do, the mistake is in the file.
@@ -173,15 +173,10 @@ fn jobs<'a>(
     Ok((jobs, left_out))
 }
 
-/// The path below the folder that was searched, which globs match.
-pub fn relative(map: &Found) -> PathBuf {
-    map.folder.join(map.path.file_name().unwrap_or_default())
-}
-
 /// Says which settings file is used, and which of its overrides are not.
 fn describe(config: &Config, found: &[Found]) {
     say(format_args!("settings from {}", config.path.display()));
-    let paths: Vec<PathBuf> = found.iter().map(relative).collect();
+    let paths: Vec<PathBuf> = found.iter().map(Found::relative).collect();
     for glob in config.unused(&paths) {
         say(format_args!("warning: {}: no height map matches the override {glob:?}", config.path.display()));
     }

@@ -4,10 +4,10 @@
 
 use super::args::PerFile;
 use clap::{Args, Command, FromArgMatches};
-use globset::{GlobBuilder, GlobMatcher};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use texbake::batch::FileGlob;
 use texbake::plan::{Prediction, predictions};
 use texbake::{Error, Result};
 use toml::Spanned;
@@ -26,7 +26,7 @@ pub struct Config {
 
 #[derive(Debug)]
 struct Override {
-    glob: GlobMatcher,
+    glob: FileGlob,
     settings: PerFile,
 }
 
@@ -64,15 +64,15 @@ impl Config {
     /// The settings of the file at `path` below the folder that was searched: key by key, those of the last override
     /// that matches and has the key, then the defaults.
     pub fn settings(&self, path: &Path) -> PerFile {
-        let matching = self.overrides.iter().rev().filter(|candidate| candidate.matches(path));
+        let matching = self.overrides.iter().rev().filter(|candidate| candidate.glob.is_match(path));
         let overridden = matching.fold(PerFile::default(), |stronger, weaker| stronger.or(&weaker.settings));
         overridden.or(&self.defaults)
     }
 
     /// The globs that match none of `paths`.
     pub fn unused<'a>(&'a self, paths: &'a [PathBuf]) -> impl Iterator<Item = &'a str> {
-        let unused = |candidate: &&Override| !paths.iter().any(|path| candidate.matches(path));
-        self.overrides.iter().filter(unused).map(|candidate| candidate.glob.glob().glob())
+        let unused = |candidate: &&Override| !paths.iter().any(|path| candidate.glob.is_match(path));
+        self.overrides.iter().filter(unused).map(|candidate| candidate.glob.text())
     }
 
     fn parse(path: &Path, text: &str) -> Result<Self> {
@@ -114,14 +114,6 @@ impl Config {
     }
 }
 
-impl Override {
-    /// A glob without a folder matches names in every folder.
-    fn matches(&self, path: &Path) -> bool {
-        let whole = self.glob.glob().glob().contains('/');
-        self.glob.is_match(if whole { path } else { path.file_name().map_or(path, Path::new) })
-    }
-}
-
 /// A settings file as text, to say where something is wrong.
 struct Source<'a> {
     path: &'a Path,
@@ -138,9 +130,10 @@ impl Source<'_> {
             let remedy = "write which files it is for, as glob = \"**/dem_*\"";
             return Err(self.error(start, "this override has no glob", remedy));
         };
-        let matcher = GlobBuilder::new(self.string("glob", glob)?).literal_separator(true).build();
-        let matcher = matcher.map_err(|error| self.error(glob.span().start, error, "correct the glob"))?;
-        Ok(Override { glob: matcher.compile_matcher(), settings: self.settings(table, start)? })
+        let at = glob.span().start;
+        let glob =
+            FileGlob::new(self.string("glob", glob)?).map_err(|error| self.error(at, error, "correct the glob"))?;
+        Ok(Override { glob, settings: self.settings(table, start)? })
     }
 
     /// The options of a table; `start` is where it begins.
@@ -171,7 +164,11 @@ impl Source<'_> {
         let text = texts.filter(|texts| !texts.is_empty()).map(|texts| texts.join(","));
         let text = text.ok_or_else(|| {
             let remedy = format!("write it as on the command line, {name} = \"...\"");
-            self.error(value.span().start, format!("{name} is neither text nor a number, nor a list of them"), remedy)
+            let reason = match value.get_ref() {
+                DeValue::Array(values) if values.is_empty() => format!("{name} is an empty list"),
+                _ => format!("{name} is neither text nor a number, nor a list of them"),
+            };
+            self.error(value.span().start, reason, remedy)
         })?;
         Ok(format!("--{name}={text}"))
     }
@@ -277,7 +274,7 @@ mod tests {
                 "[defaults]\nscale = true\n",
                 ["texbake.toml:2:", "scale is neither text nor a number", "as on the command line"],
             ),
-            ("[defaults]\nmaps = []\n", ["texbake.toml:2:", "maps is neither text", "maps = \"...\""]),
+            ("[defaults]\nmaps = []\n", ["texbake.toml:2:", "maps is an empty list", "maps = \"...\""]),
             ("[defaults]\nmaps = [true]\n", ["texbake.toml:2:", "maps is neither text", "maps = \"...\""]),
             ("[defaults]\nmaps = ['normal', 'bump']\n", ["texbake.toml:2:", "'bump' for '--maps", "normal, parallax"]),
             ("scale = 24\n", ["texbake.toml:1:", "scale has no meaning here", "[defaults] and [[override]]"]),

@@ -23,15 +23,17 @@ go wrong:
   distance = 1.5              # nearest, straight from above, in the unit of size
   fov = 60                    # vertical field of view in degrees
   resolution = [1920, 1080]   # of the screen in pixels
-  angle = 20                  # shallowest, between surface and eye, in degrees
+  angle = 20                  # shallowest, between surface and eye, 1 to 90 degrees
 
   [tolerance]
   normal = 1.0                # largest error of a normal in degrees
-  parallax = 1.0              # largest error of an offset in pixels; or
-                              # parallax-99, in 99 of 100 pixels: silhouettes,
-                              # which only relief gets right, aside
+  parallax-99 = 1.0           # error of an offset in pixels, in 99 of 100 of them;
+                              # or parallax, in all: where relief hides relief no
+                              # shader finds the same edge, so that is for gentle
+                              # hills
   bytes-per-texel = 4         # of all maps, if bounded, over texels of the file
-  milliseconds = 2            # of parallax for a full screen, if bounded
+  milliseconds = 2            # of parallax for a full screen, if bounded, on all
+                              # threads of this CPU
 
   [[material]]
   files = \"walls/*\"           # a glob, or several, as in [[override]]
@@ -41,8 +43,9 @@ go wrong:
   [[material]]                # of two for the same file the last one counts
   files = [\"cloth/*\", \"dem_*\"]
   scale = 8                   # or the height of white in texels
-  view = { texels-per-pixel = 0.5 }   # instead of a distance, for which a
-                              # material with a scale needs its size too
+  view = { texels-per-pixel = 0.5 }   # along a pixel's side, instead of a
+                              # distance, for which a material with a scale
+                              # needs its size too
   tolerance = { normal = 0.3 }
   edge = \"clamp\"              # filter, edge, convention, channel, color-space,
                               # raw: as texbake bake
@@ -53,8 +56,15 @@ What is chosen, on the maps as they would be baked, fewest bytes first: which
 maps at all, how far they are reduced (no texel covers less than a pixel at the
 nearest view), bits, encoding and channels, exact or fast, the parallax method
 and its steps, tangents or a cotangent frame. The largest error counts: of
-normals in every texel, of offsets in 8192 pixels at the shallowest angle, each
-from its own side. Milliseconds are measured on the threads of this CPU.
+normals in every texel, of offsets in 8192 pixels, each from its own side, at
+each of four angles from the shallowest up. steps 4 is FGED2 listing 7.9 with
+k = 4; relief 16+5 marches 16 steps down the ray and halves the last one 5 times.
+
+bake --check-plan measures what was baked in the same way. It fails if an error
+is larger than what was predicted, a size another, a texel of a parallax map
+farther off, or a setting not the plan's; better than predicted is no failure.
+Which of exact and fast is taken depends on how long each takes here, so that
+another machine may plan another one; milliseconds are never checked.
 
 Examples:
   texbake plan scene.toml -o texbake.toml --explain
@@ -89,9 +99,7 @@ pub struct PlanArguments {
 }
 
 pub fn plan(arguments: &PlanArguments) -> Result<Exit, Failure> {
-    if !arguments.force {
-        check_place(&arguments.output)?;
-    }
+    check_place(&arguments.output, arguments.force)?;
     let scene = Scene::read(&arguments.scene).map_err(Failure::settings)?;
     let baker = open_baker(&arguments.device.place()?)?;
     let monitor = interruptible();

@@ -146,7 +146,7 @@ pub(super) fn poisoned<F: MapFormat>(size: Size, format: F) -> CodeMap<F> {
 }
 
 /// How long work takes that may fail: the median of `runs` runs.
-pub(super) fn timed<T>(runs: usize, mut work: impl FnMut() -> Result<T>) -> Result<Duration> {
+pub(crate) fn timed<T>(runs: usize, mut work: impl FnMut() -> Result<T>) -> Result<Duration> {
     let mut failure = None;
     let time = median_time(runs, || {
         if failure.is_none() {

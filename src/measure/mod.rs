@@ -55,6 +55,9 @@ pub use frames::FrameFigure;
 pub use front::{Candidate, Front, Statistic, Step, digits, pareto_front};
 #[cfg(all(test, feature = "gpu"))]
 pub(crate) use gpu_time::WGSL as OFFSET_TIME;
+#[cfg(feature = "cli")]
+#[cfg(feature = "cli")]
+pub(crate) use maps::timed;
 pub use maps::{NormalFigure, ParallaxFigure, Stored};
 pub use normals::TrueNormals;
 #[cfg(feature = "cli")]
@@ -64,5 +67,4 @@ pub use parallax::{OffsetFigure, OffsetTime, parallax_methods};
 pub use region::Region;
 pub use report::{Input, Machine, Report};
 pub use steps::Progress;
-#[cfg(feature = "cli")]
 pub(crate) use time::median_time;

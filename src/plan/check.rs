@@ -1,11 +1,10 @@
 //! Whether what was baked is what was predicted.
 
 use super::decision::{degrees, pixels, short};
-use super::method::method;
-use super::parallax::{largest_offset, material, views};
+use super::parallax::{Sides, material};
 use super::prediction::{MapPrediction, NormalPrediction, Prediction};
 use super::scene::Facts;
-use super::visible::VisibleNormals;
+use super::subject::Reduced;
 use crate::error::{Error, Result};
 use crate::io::{NormalReadOptions, ReadOptions};
 use crate::map::{
@@ -13,6 +12,7 @@ use crate::map::{
     ParallaxFormat, ParallaxMap, Size,
 };
 use crate::material::{ParallaxMethod, Texture};
+use crate::ops::Precision;
 use crate::stream::Monitor;
 use std::path::{Path, PathBuf};
 
@@ -25,19 +25,29 @@ pub struct Checked {
     pub broken: Vec<String>,
 }
 
-/// What a number may differ by from the predicted one: sine and cosine are not the same to the last bit everywhere.
-const MARGIN: f64 = 1e-3;
+/// What an error may differ by from the predicted one: the directions to the eye are made with sine and cosine, which other
+/// systems round another way, so that an offset differs by a few times 2^-24 of itself.
+const MARGIN: f64 = 1e-6;
 
 impl Prediction {
     /// Measures the `maps` of the height map `input` again, against what the scene says of it.
     ///
     /// # Errors
-    /// What reading `input` reports. A map that cannot be read is a broken prediction.
-    pub fn check(&self, input: &Path, maps: &Maps<PathBuf>) -> Result<Checked> {
+    /// What reading `input` reports; [`Error::Cancelled`]. A map that cannot be read is a broken prediction.
+    pub fn check(&self, input: &Path, maps: &Maps<PathBuf>, monitor: &Monitor) -> Result<Checked> {
         let facts = self.material.facts()?;
         let (heights, _) = HeightMap::read_with(input, &facts.read)?;
-        let mut checking =
-            Checking { facts, heights: &heights, prediction: self, measured: Vec::new(), broken: Vec::new() };
+        let reduced = Reduced::read(input, &facts, &heights, self.shrink)?;
+        let mut checking = Checking {
+            prediction: self,
+            heights: &heights,
+            reduced,
+            facts,
+            monitor,
+            measured: Vec::new(),
+            broken: Vec::new(),
+        };
+        checking.tolerances();
         let normals = checking.normals(maps.normal.as_deref())?;
         checking.parallax(maps.parallax.as_deref(), normals)?;
         let Checking { measured, broken, .. } = checking;
@@ -47,34 +57,51 @@ impl Prediction {
     /// The most that an error may be: the predicted one, and of a fast bake, whose bytes may be others elsewhere, what
     /// the scene allows.
     fn most(&self, predicted: f64, tolerance: f64) -> f64 {
-        let most = if self.precision == "fast" { tolerance } else { predicted };
-        most * (1.0 + MARGIN)
+        match self.precision {
+            Precision::Exact => predicted * (1.0 + MARGIN),
+            Precision::Fast => tolerance,
+        }
     }
 }
 
 struct Checking<'a> {
-    facts: Facts,
-    heights: &'a HeightMap,
     prediction: &'a Prediction,
+    heights: &'a HeightMap,
+    reduced: Reduced<'a>,
+    facts: Facts,
+    monitor: &'a Monitor,
     measured: Vec<String>,
     broken: Vec<String>,
 }
 
 impl Checking<'_> {
+    /// Checks that no prediction is beyond what the scene allows: no plan writes such a one.
+    fn tolerances(&mut self) {
+        let Prediction { file, normal, parallax, .. } = self.prediction;
+        let predictions =
+            [("degrees", normal.degrees, normal.tolerance), ("pixels", parallax.pixels, parallax.tolerance)];
+        for (unit, predicted, tolerance) in predictions {
+            if !(predicted <= tolerance) {
+                let [predicted, tolerance] = [predicted, tolerance].map(short);
+                let line = format!("{file}: {predicted} {unit} are predicted, and the scene allows {tolerance}");
+                self.broken.push(line);
+            }
+        }
+    }
+
     /// Checks the normal map, or that there is none, and returns what was read.
     fn normals(&mut self, path: Option<&Path>) -> Result<Option<NormalMap>> {
         let NormalPrediction { map, degrees: predicted, tolerance } = &self.prediction.normal;
         let most = self.prediction.most(*predicted, *tolerance);
-        let visible = VisibleNormals::new(self.heights, &self.facts.bake(), self.prediction.shrink)?;
         let Some((path, map)) = self.is_there("normal", path, map.as_ref()) else {
             if map.is_none() {
-                let largest = visible.leanings().largest;
+                let largest = self.reduced.visible.leanings().largest;
                 let what = format!("{}: without a normal map, normals are off by", self.prediction.file);
                 self.compare(&what, "at most", largest, most, [largest, *predicted].map(degrees));
             }
             return Ok(None);
         };
-        let format = map.normals(self.facts.convention)?;
+        let format = map.normals(self.facts.convention);
         let read = NormalReadOptions {
             encoding: Some(format.encoding),
             channels: Some(format.channels),
@@ -90,58 +117,79 @@ impl Checking<'_> {
                 return Ok(None);
             }
         };
-        if visible.size() != baked.size() {
-            let line =
-                format!("{}: it is {}, and the plan reduces it to {}", path.display(), baked.size(), visible.size());
-            self.broken.push(line);
+        if !self.is_reduced(path, baked.size()) {
             return Ok(None);
         }
-        let largest = visible.errors(&Texture::of_normals(&baked, self.facts.edges)).largest;
+        let largest = self.reduced.visible.errors(&Texture::of_normals(&baked, self.facts.edges)).largest;
         let what = format!("{}: normals are off by", path.display());
         self.compare(&what, "at most", largest, most, [largest, *predicted].map(degrees));
         Ok(Some(baked))
     }
 
+    /// Whether a map of this size is of the reduced height map.
+    fn is_reduced(&mut self, path: &Path, size: Size) -> bool {
+        let planned = self.reduced.heights.size();
+        if size != planned {
+            self.broken
+                .push(format!("{}: it is {size}, and the plan reduces its height map to {planned}", path.display()));
+        }
+        size == planned
+    }
+
     /// Checks the parallax map, or that there is none, and what the shader makes of it or of the height map.
     fn parallax(&mut self, path: Option<&Path>, normals: Option<NormalMap>) -> Result<()> {
         let predicted = &self.prediction.parallax;
-        let there = self.is_there("parallax", path, predicted.map.as_ref());
-        let method = method(&predicted.method)?;
-        let baked = match (there, &predicted.map) {
-            (Some((path, map)), _) => match read_parallax(path, map.parallax()?) {
-                Ok((baked, depth)) if self.is_as_predicted(path, map, baked.size(), (depth, None)) => baked,
-                Ok(_) => return Ok(()),
-                Err(error) => {
-                    self.broken.push(error.to_string());
-                    return Ok(());
-                }
+        let baked = match (self.is_there("parallax", path, predicted.map.as_ref()), &predicted.map) {
+            (Some((path, map)), _) => match self.parallax_map(path, map)? {
+                Some(baked) => baked,
+                None => return Ok(()),
             },
             (None, Some(_)) => return Ok(()),
+            // No method that was planned reads it.
             (None, None) => ParallaxMap::new(Size::new(1, 1)?, ParallaxFormat::default(), Codes::U8(vec![0]))?,
         };
-        let name = path.filter(|_| predicted.map.is_some()).map(|path| path.display().to_string());
-        let name = name.unwrap_or_else(|| self.prediction.file.clone());
-        let (seen, options) = (self.prediction.seen, self.facts.bake());
-        let most = self.prediction.most(predicted.pixels, predicted.tolerance);
-        if method == ParallaxMethod::None {
-            let largest = largest_offset(self.heights, &options, seen)?;
-            let numbers = [largest, predicted.pixels].map(pixels);
-            self.compare(&format!("{name}: without parallax, offsets are"), "at most", largest, most, numbers);
-            return Ok(());
-        }
         let normals = match normals {
             Some(normals) => normals,
             // A method that looks at normals has had its map checked.
             None => NormalMap::new(Size::new(1, 1)?, NormalFormat::default(), Codes::U8(vec![128, 128, 255]))?,
         };
+        let options = self.facts.bake();
         let material = material(self.heights, &normals, &baked, &options)?;
-        let monitor = Monitor::default();
-        let (views, truth) = views(&material, seen.angle, &monitor)?;
-        let errors = views.errors(&material, method, &truth, material.texels(), &monitor)?;
-        let error = predicted.of.errors(errors) * seen.pixels_per_texel;
-        let what = format!("{name}: offsets by {} are off by", predicted.method);
+        let sides = Sides::new(self.heights, &options, &material, self.prediction.seen, self.monitor)?;
+        let error = predicted.of.errors(sides.errors(&material, predicted.method, predicted.of, self.monitor)?);
+        let name = path.filter(|_| predicted.map.is_some()).map(|path| path.display().to_string());
+        let name = name.unwrap_or_else(|| self.prediction.file.clone());
+        let what = match predicted.method {
+            ParallaxMethod::None => format!("{name}: without parallax, offsets are"),
+            method => format!("{name}: offsets by {method} are off by"),
+        };
+        let most = self.prediction.most(predicted.pixels, predicted.tolerance);
         self.compare(&what, predicted.of.words(), error, most, [error, predicted.pixels].map(pixels));
         Ok(())
+    }
+
+    /// Checks the parallax map texel by texel, and returns it if it is of the planned size.
+    fn parallax_map(&mut self, path: &Path, map: &MapPrediction) -> Result<Option<ParallaxMap>> {
+        let baked = match read_parallax(path, map.parallax()) {
+            Ok((baked, depth)) if self.is_as_predicted(path, map, baked.size(), (depth, None)) => baked,
+            Ok(_) => return Ok(None),
+            Err(error) => {
+                self.broken.push(error.to_string());
+                return Ok(None);
+            }
+        };
+        if !self.is_reduced(path, baked.size()) {
+            return Ok(None);
+        }
+        let (error, predicted) = (self.reduced.parallax_error(&baked)?, self.prediction.parallax.value.unwrap_or(0.0));
+        let most = match self.prediction.precision {
+            Precision::Exact => predicted * (1.0 + MARGIN),
+            // A code more or less than the exact one, which is off by half of one.
+            Precision::Fast => 3.0 * predicted,
+        };
+        let what = format!("{}: its values, from -1 to 1, are off by", path.display());
+        self.compare(&what, "at most", error, most, [error, predicted].map(short));
+        Ok(Some(baked))
     }
 
     fn compare(&mut self, what: &str, words: &str, error: f64, most: f64, [measured, predicted]: [String; 2]) {
@@ -182,20 +230,20 @@ impl Checking<'_> {
         let bytes = size.texels() * count * depth.bytes();
         let is_same = extension == map.format
             && [size.width(), size.height()] == map.texels
-            && depth.to_string() == map.bits
-            && channels.map(|channels| channels.to_string()) == map.channels
+            && depth == map.bits
+            && channels == map.channels
             && bytes == map.bytes;
-        let components = |channels: Option<String>| channels.map(|it| format!(" {it}")).unwrap_or_default();
+        let components = |channels: Option<Channels>| channels.map(|it| format!(" {it}")).unwrap_or_default();
         let line = format!(
             "{}: {extension} of {size}, {depth} bits{}, {} bytes; predicted {} of {} x {}, {} bits{}, {} bytes",
             path.display(),
-            components(channels.map(|it| it.to_string())),
+            components(channels),
             short(bytes as f64),
             map.format,
             map.texels[0],
             map.texels[1],
             map.bits,
-            components(map.channels.clone()),
+            components(map.channels),
             short(map.bytes as f64),
         );
         if is_same {

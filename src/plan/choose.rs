@@ -1,12 +1,13 @@
 //! The cheapest maps of one height map that keep within the tolerances.
 
-use super::decision::{Decision, Rejected, bytes_a_texel, degrees, pixels, short};
-use super::normals::{self, NoNormals, NormalChoice};
+use super::decision::{Decision, Rejected, bytes_per_texel, short, sides};
+use super::normals::{self, NormalChoice};
 use super::parallax::{self, ParallaxChoice};
+use super::prediction::TangentSpace;
 use super::subject::{Reduced, Subject};
 use super::unmet::Unmet;
 use super::{frames, precision};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::ops::Precision;
 
 /// What was chosen for a height map.
@@ -18,8 +19,7 @@ pub(super) struct Chosen {
     pub precision: Precision,
     /// All decisions, in the order in which they are told.
     pub decisions: Vec<Decision>,
-    /// `tangents`, `cotangent frame` or `none`.
-    pub tangent_space: String,
+    pub tangent_space: TangentSpace,
 }
 
 /// Maps at one resolution that keep within the tolerances.
@@ -41,7 +41,7 @@ impl Candidate {
 
 /// What `bake` is to make.
 fn maps(normals: &NormalChoice, parallax: &ParallaxChoice) -> &'static str {
-    match (normals.format.is_some(), parallax.format.is_some()) {
+    match (normals.format.is_some(), parallax.map.is_some()) {
         (true, true) => "normal,parallax",
         (true, false) => "normal",
         (false, true) => "parallax",
@@ -61,30 +61,35 @@ impl Chosen {
 /// Every resolution is tried, coarsest first, until a finer one can be no cheaper.
 pub(super) fn choose(subject: &Subject<'_>) -> Result<Result<Chosen, Unmet>> {
     let factors = subject.factors();
-    let offset = parallax::largest_offset(&subject.heights, &subject.facts().bake(), subject.seen)?;
-    let mut rejected = Vec::new();
+    let (mut rejected, mut unmet) = (Vec::new(), Vec::new());
     let mut best: Option<Candidate> = None;
-    let mut unmet = None;
     for &by in &factors {
-        let reduced = subject.reduced(by)?;
+        let reduced = match subject.reduced(by) {
+            // A scale of many digits, of which a part has too many.
+            Err(error @ Error::Parameter { .. }) if by > 1 => {
+                rejected.push(Rejected::new(resolution_name(by), error.to_string()));
+                continue;
+            }
+            reduced => reduced?,
+        };
         if best.as_ref().is_some_and(|best| best.bytes() <= least_bytes(subject, &reduced)) {
             break;
         }
-        match attempt(subject, &reduced, offset)? {
+        match attempt(subject, &reduced)? {
             Ok(candidate) if best.as_ref().is_none_or(|best| candidate.bytes() < best.bytes()) => {
                 best = Some(candidate)
             }
             Ok(_) => {}
             Err(failure) => {
-                rejected.push(Rejected::new(shrink(by), failure.why(subject)));
-                unmet = Some(failure.unmet(subject));
+                rejected.push(Rejected::new(resolution_name(by), failure.why()));
+                unmet.push(failure.at(&resolution_name(by)));
             }
         }
     }
-    let Some(best) = best else {
-        return Ok(Err(unmet.unwrap_or_else(|| unreachable!("there is the factor 1"))));
-    };
-    decide(subject, best, &factors, rejected).map(Ok)
+    match best {
+        Some(best) => decide(subject, best, &factors, rejected).map(Ok),
+        None => Ok(Err(Unmet::nearest(unmet).unwrap_or_else(|| unreachable!("there is the factor 1")))),
+    }
 }
 
 /// What the smallest maps of a resolution take, over texels of the whole map.
@@ -93,54 +98,13 @@ fn least_bytes(subject: &Subject<'_>, reduced: &Reduced<'_>) -> f64 {
     smallest.texel().bytes() as f64 * reduced.share()
 }
 
-/// Why a resolution is not fit.
-enum Failure {
-    Normals(NoNormals),
-    Other(Unmet),
-}
-
-impl Failure {
-    fn why(&self, subject: &Subject<'_>) -> String {
-        match self {
-            Self::Normals(NoNormals { best: (error, format) }) => {
-                let allowed = short(subject.tolerance().normal);
-                let format = normals::describe(*format);
-                format!("normals are off by up to {}, of {allowed} allowed, in {format}", degrees(*error))
-            }
-            Self::Other(unmet) => {
-                format!("its best is {} {}, of {} allowed", short(unmet.best), unmet.unit, short(unmet.wanted))
-            }
-        }
-    }
-
-    fn unmet(self, subject: &Subject<'_>) -> Unmet {
-        match self {
-            Self::Normals(none) => none.unmet(subject),
-            Self::Other(unmet) => unmet,
-        }
-    }
-}
-
-fn attempt(subject: &Subject<'_>, reduced: &Reduced<'_>, offset: f64) -> Result<Result<Candidate, Failure>> {
+fn attempt(subject: &Subject<'_>, reduced: &Reduced<'_>) -> Result<Result<Candidate, Unmet>> {
     let normals = match normals::choose(subject, reduced)? {
         Ok(normals) => normals,
-        Err(none) => return Ok(Err(Failure::Normals(none))),
+        Err(unmet) => return Ok(Err(unmet)),
     };
-    let bound = subject.tolerance().bytes_per_texel;
-    if let Some(wanted) = bound.filter(|bound| normals.bytes > *bound) {
-        let with = normals.decision.choice.clone();
-        let (tolerance, unit) = ("bytes-per-texel", "bytes a texel");
-        return Ok(Err(Failure::Other(Unmet { tolerance, wanted, unit, best: normals.bytes, with })));
-    }
-    let bytes_left = bound.map_or(f64::INFINITY, |bound| bound - normals.bytes);
-    let parallax = match parallax::none(subject, offset) {
-        Some(none) => Ok(none),
-        None => parallax::choose(subject, reduced, normals.format, offset, bytes_left)?,
-    };
-    Ok(match parallax {
-        Ok(parallax) => Ok(Candidate { by: reduced.by, normals, parallax }),
-        Err(unmet) => Err(Failure::Other(unmet)),
-    })
+    let parallax = parallax::choose(subject, reduced, &normals)?;
+    Ok(parallax.map(|parallax| Candidate { by: reduced.by, normals, parallax }))
 }
 
 /// The decisions that are left once the maps are chosen.
@@ -150,13 +114,12 @@ fn decide(subject: &Subject<'_>, best: Candidate, factors: &[u32], rejected: Vec
     let Candidate { by, mut normals, mut parallax } = best;
     let (precision, precision_decision) = precision::choose(subject, &reduced, &mut normals, &mut parallax)?;
     let baked = normals.format.map(|format| normals::bake(subject.baker, &reduced, format, precision)).transpose()?;
-    let frames = frames::choose(subject, baked.as_ref())?;
+    let (tangent_space, frames) = frames::choose(subject, normals.error, baked.as_ref())?;
     let mut decisions = vec![maps_decision(subject, maps_text, bytes, &normals, &parallax)];
     decisions.push(resolution(subject, by, factors, rejected));
     decisions.push(normals.decision.clone());
     decisions.extend(parallax.decisions.iter().cloned());
     decisions.push(precision_decision);
-    let tangent_space = frames.choice.clone();
     decisions.push(frames);
     Ok(Chosen { shrink: by, normals, parallax, precision, decisions, tangent_space })
 }
@@ -172,12 +135,12 @@ fn maps_decision(
         Some(_) => "normals lean by more than the tolerance".to_owned(),
         None => "normals are flat to within the tolerance".to_owned(),
     }];
-    reasons.push(match (parallax.format, parallax.method.fetches()) {
+    reasons.push(match (parallax.map, parallax.method.fetches()) {
         (Some(_), _) => format!("{} reads a parallax map", parallax.method),
-        (None, 0) => "no offset is seen".to_owned(),
+        (None, 0) => "offsets are within theirs".to_owned(),
         (None, _) => format!("{} reads the height map as it is", parallax.method),
     });
-    let mut reason = format!("{}; in all {} of the height map", reasons.join(", "), bytes_a_texel(bytes));
+    let mut reason = format!("{}; in all {} of the height map", reasons.join(", "), bytes_per_texel(bytes));
     if let Some(bound) = subject.tolerance().bytes_per_texel {
         reason += &format!(", of {} allowed", short(bound));
     }
@@ -187,18 +150,18 @@ fn maps_decision(
 fn resolution(subject: &Subject<'_>, by: u32, factors: &[u32], rejected: Vec<Rejected>) -> Decision {
     let size = subject.heights.size();
     let (width, height) = (size.width() / by as usize, size.height() / by as usize);
-    let covers = f64::from(by) * subject.seen.pixels_per_texel;
-    let mut reason = format!("{width} x {height}: a texel covers {} at the nearest view", pixels(covers));
-    if by == 1 && covers > 1.0 {
-        reason += ", and there are no finer ones";
+    let covers = subject.seen.pixels_per_texel.map(|pixels| pixels * f64::from(by));
+    let mut reason = format!("{width} x {height}: a texel covers {} at the nearest view", sides(covers));
+    if by == 1 && subject.seen.longer_side() > 1.0 {
+        reason += ", so that no texel can be spared";
     } else if Some(&by) == factors.first() {
-        reason += "; no coarser one divides the map and covers no more than one";
+        reason += "; no coarser one divides the map and covers at most one";
     } else if rejected.is_empty() {
         reason += "; coarser ones need larger codes";
     }
-    Decision::new("resolution", shrink(by), reason).without(rejected)
+    Decision::new("resolution", resolution_name(by), reason).without(rejected)
 }
 
-fn shrink(by: u32) -> String {
-    if by == 1 { "whole".into() } else { format!("shrink {by}") }
+fn resolution_name(by: u32) -> String {
+    if by == 1 { "full resolution".into() } else { format!("shrink {by}") }
 }

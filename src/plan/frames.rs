@@ -1,9 +1,10 @@
 //! Tangents at the vertices, or a cotangent frame at each pixel.
 
 use super::decision::{Decision, Rejected, degrees, short};
+use super::prediction::TangentSpace;
 use super::subject::Subject;
 use crate::baker::Baker;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::inspect::angle;
 use crate::io::Model;
 use crate::map::{Convention, NormalMap};
@@ -19,55 +20,71 @@ use std::path::Path;
 /// What 4 floats take at each vertex.
 const BYTES_PER_VERTEX: u32 = 16;
 
-/// Names in predictions.
-pub(super) const TANGENTS: &str = "tangents";
-pub(super) const COTANGENT_FRAME: &str = "cotangent frame";
-
 /// Points of a triangle that are looked at: shares of its corners.
 const POINTS: [[f32; 3]; 4] = [[1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0], [0.8, 0.1, 0.1], [0.1, 0.8, 0.1], [0.1, 0.1, 0.8]];
 
-/// A cotangent frame where it shows the normals that tangents show, within the tolerance: it costs no bytes.
-pub(super) fn choose(subject: &Subject<'_>, normals: Option<&NormalMap>) -> Result<Decision> {
-    const TOPIC: &str = "tangent space";
+/// A cotangent frame where it shows the normals that tangents show, within what `error` of the normal map leaves of the
+/// tolerance: it costs no bytes.
+pub(super) fn choose(
+    subject: &Subject<'_>,
+    error: f64,
+    normals: Option<&NormalMap>,
+) -> Result<(TangentSpace, Decision)> {
+    let choice = |space: TangentSpace, reason: String| (space, Decision::new("tangent space", space, reason));
     let Some(normals) = normals else {
-        return Ok(Decision::new(TOPIC, "none", "there is no normal map to turn"));
+        return Ok(choice(TangentSpace::None, "there is no normal map to turn".into()));
     };
     let Some(model) = &subject.material.model else {
         let reason = format!(
-            "no tangents, {BYTES_PER_VERTEX} bytes a vertex less; both are the same on flat surfaces, and the scene names \
-             no model to measure others"
+            "no tangents, {BYTES_PER_VERTEX} bytes per vertex less; both are the same on flat surfaces that are mapped \
+             evenly, and the scene names no model to measure others"
         );
-        return Ok(Decision::new(TOPIC, COTANGENT_FRAME, reason));
+        return Ok(choice(TangentSpace::CotangentFrame, reason));
     };
     let texture = Texture::of_normals(normals, subject.facts().edges);
     let pixels = pixels_of(model)?;
+    if pixels.is_empty() {
+        let remedy = "give its triangles texture coordinates, or leave model out";
+        return Err(Error::file(model, "no triangle has an area in space and in the texture", remedy));
+    }
     let errors = Errors::of(pixels.iter().map(|pixel| pixel.difference(&texture)).collect());
     let nanoseconds = |shade: fn(&Pixel, &Texture<3>) -> [f32; 3]| {
         let time = median_time(5, || pixels.iter().for_each(|pixel| _ = black_box(shade(black_box(pixel), &texture))));
-        short(time.as_secs_f64() * 1e9 / pixels.len().max(1) as f64)
+        short(time.as_secs_f64() * 1e9 / pixels.len() as f64)
     };
     let measured = format!(
-        "normals of {} differ by {} at most, {} in the mean, in {} pixels; {} ns a pixel on one thread of the CPU, with \
-         tangents {}",
+        "normals of {} differ by {} at most, {} in the mean, in {} pixels",
         model.display(),
         degrees(errors.largest),
         short(errors.mean),
         pixels.len(),
+    );
+    let times = format!(
+        "{} ns per pixel on one thread of the CPU, with tangents {}",
         nanoseconds(Pixel::with_cotangent_frame),
         nanoseconds(Pixel::with_tangent),
     );
-    let tolerance = subject.tolerance().normal;
-    Ok(match errors.largest <= tolerance {
-        true => {
-            let reason = format!("no tangents, {BYTES_PER_VERTEX} bytes a vertex less: {measured}");
-            let costs = format!("{BYTES_PER_VERTEX} bytes a vertex");
-            Decision::new(TOPIC, COTANGENT_FRAME, reason).without(vec![Rejected::new(TANGENTS, costs)])
-        }
+    // What a pixel shows is off by both at most.
+    let left = subject.tolerance().normal - error;
+    let (taken, mut decision) = match errors.largest <= left {
+        true => choice(
+            TangentSpace::CotangentFrame,
+            format!(
+                "no tangents, {BYTES_PER_VERTEX} bytes per vertex less: {measured}, of {} that the map leaves",
+                short(left)
+            ),
+        ),
         false => {
-            let reason = format!("{BYTES_PER_VERTEX} bytes a vertex, which normals need here");
-            Decision::new(TOPIC, TANGENTS, reason).without(vec![Rejected::new(COTANGENT_FRAME, measured)])
+            choice(TangentSpace::Tangents, format!("{BYTES_PER_VERTEX} bytes per vertex, which normals need here"))
         }
-    })
+    };
+    decision.rejected = vec![match taken {
+        TangentSpace::Tangents => {
+            Rejected::new(TangentSpace::CotangentFrame, format!("{measured}; the map leaves {}", degrees(left)))
+        }
+        _ => Rejected::new(TangentSpace::Tangents, format!("{BYTES_PER_VERTEX} bytes per vertex")),
+    }];
+    Ok((taken, decision.taking(times)))
 }
 
 /// A point of a triangle.

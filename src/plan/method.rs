@@ -2,12 +2,14 @@
 
 use crate::error::{Error, Result};
 use crate::material::ParallaxMethod;
+use serde::de::{self, Deserialize, Deserializer};
+use serde::ser::Serializer;
 
 /// The method that [`ParallaxMethod`]'s `Display` calls by this name.
 ///
 /// # Errors
 /// [`Error::Parameter`].
-pub(super) fn method(name: &str) -> Result<ParallaxMethod> {
+fn method(name: &str) -> Result<ParallaxMethod> {
     let words: Vec<&str> = name.split([' ', '+', ',']).filter(|word| !word.is_empty()).collect();
     let number = |word: &str| word.parse::<u32>().ok().filter(|number| *number <= 65_536);
     let found = match words[..] {
@@ -23,6 +25,16 @@ pub(super) fn method(name: &str) -> Result<ParallaxMethod> {
     };
     let range = "none, welsh, limited, plane, limit L, steps K or relief STEPS+BISECTIONS";
     found.ok_or_else(|| Error::parameter("method", name, range))
+}
+
+/// For fields of predictions.
+pub(super) fn serialize<S: Serializer>(method: &ParallaxMethod, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(method)
+}
+
+/// The same.
+pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<ParallaxMethod, D::Error> {
+    method(&String::deserialize(deserializer)?).map_err(de::Error::custom)
 }
 
 /// What a method looks up.

@@ -1,6 +1,6 @@
 //! Which normal map.
 
-use super::decision::{Decision, Rejected, bytes_a_texel, degrees, short};
+use super::decision::{Decision, Rejected, bytes_per_texel, degrees, short};
 use super::subject::{Reduced, Subject};
 use super::unmet::Unmet;
 use crate::baker::Baker;
@@ -24,12 +24,6 @@ pub(super) struct NormalChoice {
     pub decision: Decision,
 }
 
-/// Why there is no such map at a resolution.
-pub(super) struct NoNormals {
-    /// The least error that was measured, and the format that has it.
-    pub best: (f64, NormalFormat),
-}
-
 /// The formats that files of this extension hold, cheapest first; of those that cost the same, what engines expect.
 pub(super) fn formats(extension: &str, convention: Convention) -> Vec<NormalFormat> {
     let file = Path::new("map").with_extension(extension);
@@ -47,7 +41,7 @@ pub(super) fn formats(extension: &str, convention: Convention) -> Vec<NormalForm
 }
 
 /// The cheapest normal map of a resolution that keeps within the tolerance.
-pub(super) fn choose(subject: &Subject<'_>, reduced: &Reduced<'_>) -> Result<Result<NormalChoice, NoNormals>> {
+pub(super) fn choose(subject: &Subject<'_>, reduced: &Reduced<'_>) -> Result<Result<NormalChoice, Unmet>> {
     let tolerance = subject.tolerance().normal;
     let flat = reduced.visible.leanings().largest;
     if flat <= tolerance {
@@ -81,8 +75,10 @@ pub(super) fn choose(subject: &Subject<'_>, reduced: &Reduced<'_>) -> Result<Res
             best = Some((largest, format));
         }
     }
-    let best = best.unwrap_or((flat, NormalFormat::default()));
-    Ok(Err(NoNormals { best }))
+    let (least, format) = best.unwrap_or((flat, NormalFormat::default()));
+    let file = &subject.material.format;
+    let finer = (file != "exr").then(|| "write floats, as format = \"exr\"".to_owned());
+    Ok(Err(Unmet::normal(tolerance, least, format!("{} in {file}", describe(format)), finer)))
 }
 
 /// The errors of a normal map in degrees.
@@ -111,16 +107,8 @@ fn texture(map: &NormalMap, reduced: &Reduced<'_>) -> Texture<3> {
     Texture::of_normals(map, reduced.options.edges)
 }
 
-impl NoNormals {
-    pub fn unmet(&self, subject: &Subject<'_>) -> Unmet {
-        let (best, format) = self.best;
-        let with = format!("{} in {} at full resolution", describe(format), subject.material.format);
-        Unmet { tolerance: "normal", wanted: subject.tolerance().normal, unit: "degrees", best, with }
-    }
-}
-
-/// `unorm 8 xy, 2 bytes a texel`.
+/// `unorm 8 xy, 2 bytes per texel`.
 pub(super) fn describe(format: NormalFormat) -> String {
     let NormalFormat { encoding, depth, channels, .. } = format;
-    format!("{encoding} {depth} {channels}, {}", bytes_a_texel(format.texel().bytes() as f64))
+    format!("{encoding} {depth} {channels}, {}", bytes_per_texel(format.texel().bytes() as f64))
 }

@@ -1,15 +1,14 @@
 //! A plan: what is chosen for each height map of a scene, and what is said of it.
 
 use super::choose::{Chosen, choose};
-use super::decision::{Decision, degrees, pixels, wrapped};
-use super::normals::NormalChoice;
-use super::parallax::ParallaxChoice;
+use super::decision::{Decision, degrees, pixels, sides, wrapped};
 use super::prediction::{ErrorOf, MapPrediction, MaterialFacts, NormalPrediction, ParallaxPrediction, Prediction};
-use super::scene::{Material, Scene, below};
+use super::scene::{Scene, SceneMaterial};
 use super::subject::Subject;
+use super::unmet::Unmet;
 use crate::baker::Baker;
 use crate::error::Result;
-use crate::map::{HeightType, Size};
+use crate::map::{Channels, HeightType, Size, TexelFormat};
 use crate::stream::Monitor;
 use std::path::{Path, PathBuf};
 
@@ -50,20 +49,25 @@ impl Plan {
     /// tolerances. `watch` is told each file before it is looked at.
     ///
     /// # Errors
-    /// [`crate::Error::File`] for a tolerance that cannot be met, with the best that can; what reading reports;
+    /// [`crate::Error::File`] for the tolerances that cannot be met, with the best that can; what reading reports;
     /// [`crate::Error::Cancelled`] when `monitor` says so.
     pub fn new(scene: &Scene, baker: &Baker, monitor: &Monitor, watch: &mut dyn FnMut(&Path)) -> Result<Self> {
-        let (mut files, mut left_out) = (Vec::new(), Vec::new());
+        let (mut files, mut left_out, mut unmet) = (Vec::new(), Vec::new(), Vec::new());
         for (map, material) in scene.files()? {
             monitor.check()?;
             let Some(material) = material else {
-                left_out.push(below(&map));
+                left_out.push(map.relative());
                 continue;
             };
             watch(&map.path);
             let subject = Subject::read(&map.path, material, baker, monitor)?;
-            let chosen = choose(&subject)?.map_err(|unmet| unmet.error(&scene.path, &below(&map)))?;
-            files.push(FilePlan::new(below(&map), &subject, chosen));
+            match choose(&subject)? {
+                Ok(chosen) => files.push(FilePlan::new(map.relative(), &subject, chosen)),
+                Err(none) => unmet.push((map.relative(), none)),
+            }
+        }
+        if !unmet.is_empty() {
+            return Err(Unmet::error(&scene.path, unmet));
         }
         let (path, folder, suffixes) = (scene.path.clone(), scene.folder.clone(), scene.suffixes.clone());
         Ok(Self { scene: path, folder, suffixes, files, left_out })
@@ -82,19 +86,21 @@ impl FilePlan {
     pub fn explanation(&self) -> String {
         let Prediction { seen, normal, parallax, .. } = &self.prediction;
         let header = format!(
-            "{}: {}, {}; {} a texel at the nearest view, {} at the shallowest; tolerances {}, {}{}",
+            "{}: {}, {}; a texel covers {} at the nearest view, {} is the shallowest; normals may be off by {}, offsets \
+             by {}{}",
             self.file.display(),
             self.size,
             self.height_type,
-            pixels(seen.pixels_per_texel),
+            sides(seen.pixels_per_texel),
             degrees(seen.angle),
             degrees(normal.tolerance),
             pixels(parallax.tolerance),
             if parallax.of == ErrorOf::Most { " in 99 of 100" } else { "" },
         );
         let mut text = wrapped(&header, ["", "    "]);
-        for Decision { topic, choice, reason, rejected } in &self.decisions {
-            text += &format!("  {topic}: {choice}\n{}", wrapped(reason, ["      "; 2]));
+        for Decision { topic, choice, reason, times, rejected } in &self.decisions {
+            let times = times.iter().map(|times| format!("; {times}")).collect::<String>();
+            text += &format!("  {topic}: {choice}\n{}", wrapped(&(reason.clone() + &times), ["      "; 2]));
             for rejected in rejected {
                 text += &wrapped(&format!("not {}: {}", rejected.what, rejected.why), ["      ", "        "]);
             }
@@ -104,7 +110,7 @@ impl FilePlan {
 }
 
 /// What `bake` is told of the file: all of it, so that no other override's value is left.
-fn settings(material: &Material, chosen: &Chosen) -> Vec<(&'static str, String)> {
+fn settings(material: &SceneMaterial, chosen: &Chosen) -> Vec<(&'static str, String)> {
     let facts = MaterialFacts::new(&material.facts);
     let mut settings = vec![("maps", chosen.maps().to_owned())];
     if chosen.maps() == "none" {
@@ -123,7 +129,7 @@ fn settings(material: &Material, chosen: &Chosen) -> Vec<(&'static str, String)>
             ("channels", format.channels.to_string()),
         ]);
     }
-    if let Some(format) = chosen.parallax.format {
+    if let Some(format) = chosen.parallax.format() {
         let (encoding, bits) = (format.encoding.to_string(), format.depth.to_string());
         settings.extend([("parallax-encoding", encoding), ("parallax-bits", bits)]);
     }
@@ -132,39 +138,34 @@ fn settings(material: &Material, chosen: &Chosen) -> Vec<(&'static str, String)>
 
 fn prediction(file: &Path, subject: &Subject<'_>, chosen: &Chosen) -> Prediction {
     let Chosen { shrink, normals, parallax, precision, tangent_space, .. } = chosen;
-    let NormalChoice { format, error, .. } = normals;
     let tolerance = subject.tolerance();
     let (size, by) = (subject.heights.size(), *shrink as usize);
     let texels = [size.width() / by, size.height() / by];
-    let map = |encoding: String, bits: String, channels: Option<String>, texel_bytes: usize| MapPrediction {
-        format: subject.material.format.clone(),
-        texels,
-        encoding,
-        bits,
-        channels,
-        bytes: texels[0] * texels[1] * texel_bytes,
+    let map = |TexelFormat { encoding, depth, .. }, channels: Option<Channels>| {
+        let bytes = texels[0] * texels[1] * channels.map_or(1, Channels::count) * depth.bytes();
+        MapPrediction { format: subject.material.format.clone(), texels, encoding, bits: depth, channels, bytes }
     };
-    let normal_map = format.map(|format| {
-        let channels = Some(format.channels.to_string());
-        map(format.encoding.to_string(), format.depth.to_string(), channels, format.texel().bytes())
-    });
-    let normal = NormalPrediction { degrees: *error, tolerance: tolerance.normal, map: normal_map };
-    let ParallaxChoice { method, format, error, .. } = parallax;
-    let parallax_map =
-        format.map(|format| map(format.encoding.to_string(), format.depth.to_string(), None, format.depth.bytes()));
-    let (method, pixels) = (method.to_string(), *error);
-    let (tolerance, of) = (tolerance.parallax, tolerance.parallax_of);
-    let parallax = ParallaxPrediction { method, pixels, of, tolerance, map: parallax_map };
     Prediction {
         file: slashed(file),
-        maps: chosen.maps().into(),
         shrink: *shrink,
-        precision: precision.to_string(),
-        tangent_space: tangent_space.clone(),
+        precision: *precision,
+        tangent_space: *tangent_space,
         material: MaterialFacts::new(subject.facts()),
         seen: subject.seen,
-        normal,
-        parallax,
+        normal: NormalPrediction {
+            map: normals.format.map(|format| map(format.texel(), Some(format.channels))),
+            degrees: normals.error,
+            tolerance: tolerance.normal,
+        },
+        parallax: ParallaxPrediction {
+            map: parallax.format().map(|format| map(format.texel(), None)),
+            value: parallax.map.map(|map| map.error),
+            method: parallax.method,
+            pixels: parallax.error,
+            of: tolerance.parallax_of,
+            tolerance: tolerance.parallax,
+            milliseconds: parallax.milliseconds,
+        },
     }
 }
 

@@ -7,7 +7,7 @@ use crate::error::{Error, Result, plain};
 use crate::io::replace::Replacement;
 use serde::Serialize;
 use std::io::{ErrorKind, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// How a settings file begins that a plan has written, and that another plan may replace.
 const MARK: &str = "# Written by texbake plan.";
@@ -53,8 +53,9 @@ impl Plan {
     /// # Errors
     /// [`Error::File`] if something else than a plan's settings is there, unless `replaces_all`; [`Error::Io`].
     pub fn write(&self, path: &Path, replaces_all: bool) -> Result<()> {
-        if !replaces_all {
-            check_place(path)?;
+        check_place(path, replaces_all)?;
+        if place(path) == place(&self.scene) {
+            return Err(Error::file(path, "it is the scene itself", "write elsewhere with -o"));
         }
         let text = self.settings()?;
         let folder = path.parent().unwrap_or(Path::new(""));
@@ -65,11 +66,18 @@ impl Plan {
     }
 }
 
-/// Fails if there is a file at `path` that no plan has written: it would be lost.
+/// Fails if `path` is no settings file by its name; or if, unless `replaces_all`, there is a file that no plan has
+/// written: it would be lost.
 ///
 /// # Errors
 /// [`Error::File`]; [`Error::Io`] if what is there cannot be read.
-pub fn check_place(path: &Path) -> Result<()> {
+pub fn check_place(path: &Path, replaces_all: bool) -> Result<()> {
+    if path.extension().is_none_or(|extension| extension != "toml") {
+        return Err(Error::file(path, "settings are TOML", "name it .toml, as texbake.toml"));
+    }
+    if replaces_all {
+        return Ok(());
+    }
     let mut begin = Vec::new();
     match std::fs::File::open(path) {
         Ok(file) => file.take(MARK.len() as u64).read_to_end(&mut begin).map_err(Error::io(path))?,
@@ -81,6 +89,11 @@ pub fn check_place(path: &Path) -> Result<()> {
     }
     let remedy = "move it away, write elsewhere with -o, or replace it with --force";
     Err(Error::file(path, "texbake plan did not write this file, and would overwrite it", remedy))
+}
+
+/// Where a path leads to.
+fn place(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.into())
 }
 
 impl FilePlan {

@@ -1,20 +1,23 @@
 //! A height map under plan, whole and reduced.
 
-use super::scene::{Facts, Material, Tolerance};
+use super::scene::{Facts, SceneMaterial, Tolerance};
 use super::view::Seen;
 use super::visible::VisibleNormals;
 use crate::baker::Baker;
 use crate::error::Result;
 use crate::io::ReadOptions;
-use crate::map::HeightMap;
+use crate::map::{HeightMap, ParallaxMap};
+use crate::material::Texture;
+use crate::measure::TrueNormals;
 use crate::ops::bake::BakeOptions;
 use crate::stream::Monitor;
+use std::num::NonZeroU32;
 use std::path::Path;
 
 /// A height map under plan.
 pub(super) struct Subject<'a> {
     pub path: &'a Path,
-    pub material: &'a Material,
+    pub material: &'a SceneMaterial,
     pub heights: HeightMap,
     pub seen: Seen,
     pub baker: &'a Baker,
@@ -38,7 +41,7 @@ const GREATEST_SHRINK: u32 = 64;
 const MARGIN: f64 = 1e-6;
 
 impl<'a> Subject<'a> {
-    pub fn read(path: &'a Path, material: &'a Material, baker: &'a Baker, monitor: &'a Monitor) -> Result<Self> {
+    pub fn read(path: &'a Path, material: &'a SceneMaterial, baker: &'a Baker, monitor: &'a Monitor) -> Result<Self> {
         let (heights, _) = HeightMap::read_with(path, &material.facts.read)?;
         let seen = material.view.of(heights.size(), material.extent);
         Ok(Self { path, material, heights, seen, baker, monitor })
@@ -57,22 +60,33 @@ impl<'a> Subject<'a> {
     pub fn factors(&self) -> Vec<u32> {
         let (width, height) = (self.heights.size().width(), self.heights.size().height());
         let divides = |by: &u32| width % *by as usize == 0 && height % *by as usize == 0;
-        let is_seen = |by: &u32| *by == 1 || f64::from(*by) * self.seen.pixels_per_texel <= 1.0 + MARGIN;
+        let is_seen = |by: &u32| *by == 1 || f64::from(*by) * self.seen.longer_side() <= 1.0 + MARGIN;
         (1..=GREATEST_SHRINK).rev().filter(divides).filter(is_seen).collect()
     }
 
     /// The map reduced by one of the factors.
     pub fn reduced(&self, by: u32) -> Result<Reduced<'_>> {
-        let shrink = by.try_into().unwrap_or(std::num::NonZeroU32::MIN);
-        let read = ReadOptions { shrink, ..self.facts().read.clone() };
-        let (heights, _) = HeightMap::read_with(self.path, &read)?;
-        let whole = self.facts().bake();
-        let visible = VisibleNormals::new(&self.heights, &whole, by)?;
-        Ok(Reduced { by, heights, options: BakeOptions { scale: whole.scale.shrunk(shrink)?, ..whole }, visible })
+        Reduced::read(self.path, self.facts(), &self.heights, by)
     }
 }
 
-impl Reduced<'_> {
+impl<'a> Reduced<'a> {
+    /// The map at `path`, whose heights are `whole`, reduced by `by`.
+    pub fn read(path: &Path, facts: &Facts, whole: &'a HeightMap, by: u32) -> Result<Self> {
+        let shrink = by.try_into().unwrap_or(NonZeroU32::MIN);
+        let (heights, _) = HeightMap::read_with(path, &ReadOptions { shrink, ..facts.read.clone() })?;
+        let options = facts.bake();
+        let visible = VisibleNormals::new(whole, &options, by)?;
+        let options = BakeOptions { scale: options.scale.shrunk(shrink)?, ..options };
+        Ok(Self { by, heights, options, visible })
+    }
+
+    /// The largest error of a texel of a parallax map of it, of values from -1 to 1.
+    pub fn parallax_error(&self, map: &ParallaxMap) -> Result<f64> {
+        let texture = Texture::of_parallax(map, self.options.edges);
+        Ok(TrueNormals::new(&self.heights, &self.options)?.parallax_errors(&texture).largest)
+    }
+
     /// What a byte for each texel of this map is for each of the whole one.
     pub fn share(&self) -> f64 {
         1.0 / f64::from(self.by * self.by)

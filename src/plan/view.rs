@@ -3,6 +3,7 @@
 use crate::exact::Rational;
 use crate::map::Size;
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 use toml::Spanned;
 
 /// From where a material is seen at its nearest, and at its shallowest.
@@ -19,7 +20,7 @@ pub struct View {
 /// The nearest view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sight {
-    /// Texels that a pixel covers there.
+    /// Texels along the side of a pixel there, on the axis that has more of them.
     TexelsPerPixel(f64),
     /// A perspective view, straight from above.
     Perspective {
@@ -36,8 +37,8 @@ pub enum Sight {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Seen {
-    /// Pixels that a texel of the height map covers at the nearest view: the larger of both axes.
-    pub pixels_per_texel: f64,
+    /// Pixels along the sides of a texel of the height map, x and y, at the nearest view.
+    pub pixels_per_texel: [f64; 2],
     /// The shallowest angle in degrees.
     pub angle: f64,
 }
@@ -45,19 +46,29 @@ pub struct Seen {
 impl View {
     /// What is seen of a map of `size` that covers `extent`.
     pub fn of(&self, size: Size, extent: Option<[Rational; 2]>) -> Seen {
-        let pixels_per_texel = match (self.sight, extent) {
-            (Sight::Perspective { distance, fov, rows }, Some(extent)) => {
+        let length =
+            |side: Rational, texels: usize| side.numerator() as f64 / side.denominator() as f64 / texels as f64;
+        let texel = extent.map(|[width, height]| [length(width, size.width()), length(height, size.height())]);
+        let pixels_per_texel = match (self.sight, texel) {
+            (Sight::Perspective { distance, fov, rows }, Some(texel)) => {
                 // At the distance d the screen's rows show 2 d tan(fov / 2).
-                let pixels_per_unit = rows / (2.0 * distance * (fov / 2.0).to_radians().tan());
-                let texel =
-                    |side: Rational, texels: usize| side.numerator() as f64 / side.denominator() as f64 / texels as f64;
-                pixels_per_unit * texel(extent[0], size.width()).max(texel(extent[1], size.height()))
+                let pixels_per_unit = rows / (2.0 * distance * libm::tan((fov / 2.0).to_radians()));
+                texel.map(|side| pixels_per_unit * side)
             }
-            (Sight::TexelsPerPixel(texels), _) => 1.0 / texels,
+            (Sight::TexelsPerPixel(texels), Some([x, y])) => [x, y].map(|side| side / x.min(y) / texels),
+            (Sight::TexelsPerPixel(texels), None) => [1.0 / texels; 2],
             // A scene with such a material is refused.
-            (Sight::Perspective { .. }, None) => 1.0,
+            (Sight::Perspective { .. }, None) => [1.0; 2],
         };
         Seen { pixels_per_texel, angle: self.angle }
+    }
+}
+
+impl Seen {
+    /// Pixels along the longer side of a texel.
+    pub fn longer_side(&self) -> f64 {
+        let [x, y] = self.pixels_per_texel;
+        x.max(y)
     }
 }
 
@@ -96,7 +107,7 @@ impl ViewText {
     }
 
     pub fn resolve(&self) -> Result<View, Wrong> {
-        let angle = within("angle", &self.angle, "a number of degrees above 0, up to 90", |it| it > 0.0 && it <= 90.0)?;
+        let angle = within("angle", &self.angle, "a number of degrees from 1 to 90", 1.0..=90.0)?;
         let angle = angle.ok_or_else(|| missing("angle", "write the shallowest angle in degrees, as angle = 20"))?;
         let resolution = self.resolution.as_ref().map(|resolution| match *resolution.get_ref() {
             pixels if pixels.iter().all(|side| (1.0..=1e6).contains(side)) => Ok(pixels),
@@ -107,10 +118,10 @@ impl ViewText {
             }),
         });
         let resolution = resolution.transpose()?;
-        let above_zero = "a number above zero";
-        let texels = within("texels-per-pixel", &self.texels_per_pixel, above_zero, |it| it > 0.0)?;
-        let distance = within("distance", &self.distance, above_zero, |it| it > 0.0)?;
-        let fov = within("fov", &self.fov, "a number of degrees above 0 and below 180", |it| it > 0.0 && it < 180.0)?;
+        let (wide, range) = (1e-6..=1e6, "a number from 0.000001 to 1000000");
+        let texels = within("texels-per-pixel", &self.texels_per_pixel, range, wide.clone())?;
+        let distance = within("distance", &self.distance, range, wide)?;
+        let fov = within("fov", &self.fov, "a number of degrees from 1 to 179", 1.0..=179.0)?;
         let sight = match (texels, distance) {
             (Some(texels), None) => Sight::TexelsPerPixel(texels),
             (None, Some(distance)) => {
@@ -140,11 +151,11 @@ fn within(
     key: &str,
     value: &Option<Spanned<f64>>,
     range: &'static str,
-    fits: impl Fn(f64) -> bool,
+    values: RangeInclusive<f64>,
 ) -> Result<Option<f64>, Wrong> {
     let Some(spanned) = value else { return Ok(None) };
     let value = *spanned.get_ref();
-    if value.is_finite() && fits(value) {
+    if values.contains(&value) {
         return Ok(Some(value));
     }
     Err(Wrong {

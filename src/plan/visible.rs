@@ -33,11 +33,6 @@ impl<'a> VisibleNormals<'a> {
         Ok(Self { whole: TrueNormals::new(heights, options)?, by, size })
     }
 
-    /// Texels of the reduced map.
-    pub fn size(&self) -> Size {
-        self.size
-    }
-
     /// The angles in degrees to the normals of a map of the reduced size, as a shader reads them.
     pub fn errors(&self, normals: &Texture<3>) -> Errors {
         self.angles(|i| normals.texels()[i])
@@ -59,8 +54,8 @@ impl<'a> VisibleNormals<'a> {
         let (by, mut sum) = (self.by, [0.0; 2]);
         for row in y * by..(y + 1) * by {
             for column in x * by..(x + 1) * by {
-                let [x, y, z] = self.whole.at(column, row);
-                sum = [sum[0] + x / z, sum[1] + y / z];
+                let [x, y] = self.whole.slope(column, row);
+                sum = [sum[0] - x, sum[1] - y];
             }
         }
         [sum[0], sum[1], (by * by) as f64]

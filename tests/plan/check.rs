@@ -1,8 +1,10 @@
 //! Plans that are baked and measured again, and those that are broken on purpose.
 
 use super::{plan, scene, wave};
-use crate::cli::support::{Folder, Run, bumps16};
+use crate::cli::support::{Folder, Run, bumps16, write_normals};
 use texbake::plan::predictions;
+use texbake::stream::Monitor;
+use texbake::{Channels, Codes, Convention, Depth, Encoding, Error, Maps, NormalFormat, NormalMap, Size};
 
 /// Waves that get both maps, noise that gets a normal map, and a flat map that gets none; in folders, and in brackets.
 fn textures() -> Folder {
@@ -143,6 +145,106 @@ fn maps_that_were_replaced_damaged_or_removed_are_noticed() {
 }
 
 #[test]
+fn texels_without_a_direction_and_single_wrong_texels_are_noticed() {
+    let only = ["--check-plan=only", "-q"];
+    // 128 in all three channels: biased codes of zero, and no vector at all.
+    let folder = textures();
+    let scene = std::fs::read_to_string(folder.path("scene.toml")).unwrap();
+    let steep = scene.replace("scale = 8\n", "scale = 20\n").replace("normal = 0.3", "normal = 0.5");
+    folder.file("scene.toml", steep);
+    folder.run(&["plan", "scene.toml", "-o", "texbake.toml"]).ends(0);
+    bake(&folder, &["--backend", "cpu", "-q"]).ends(0);
+    for (file, codes) in [("out/sub/[a]_normal.png", [128, 128, 0]), ("out/wave_normal.png", [128, 128, 128])] {
+        let before = std::fs::read(folder.path(file)).unwrap();
+        let size = if file.contains("sub") { 32 } else { 64 };
+        image::RgbImage::from_pixel(size, size, image::Rgb(codes)).save(folder.path(file)).unwrap();
+        let run = bake(&folder, &only).ends(1);
+        assert!(run.stderr.lines().any(|line| line.starts_with("error: plan broken: ") && line.contains(file)));
+        folder.file(file, before);
+    }
+    bake(&folder, &only).ends(0);
+
+    let one_texel = |folder: &Folder| {
+        let path = folder.path("out/wave_parallax.png");
+        let mut map = image::open(&path).unwrap().into_luma8();
+        map.put_pixel(17, 5, image::Luma([255 - map.get_pixel(17, 5).0[0]]));
+        map.save(&path).unwrap();
+    };
+    let parts = ["its values, from -1 to 1, are off by ", " predicted"];
+    assert_broken(one_texel, &only, "out/wave_parallax.png", &parts);
+}
+
+#[test]
+fn floats_that_are_no_numbers_are_noticed() {
+    let folder = Folder::new();
+    folder.grey16("wave_h.png", 64, 64, wave);
+    folder.file("scene.toml", scene("normal = 0.0001\nparallax = 9", "scale = 2\nformat = 'exr'"));
+    folder.run(&["plan", "scene.toml", "-o", "texbake.toml"]).ends(0);
+    let bake =
+        |more: &[&str]| folder.run(&[&["bake", ".", "--config", "texbake.toml", "--out", "out"][..], more].concat());
+    bake(&["--check-plan", "-q"]).ends(0);
+    for value in [f32::NAN, 0.0, f32::INFINITY] {
+        let format = NormalFormat {
+            encoding: Encoding::Float,
+            depth: Depth::Float32,
+            channels: Channels::Xy,
+            convention: Convention::Gl,
+        };
+        let codes = Codes::F32(vec![value; 64 * 64 * 2]);
+        write_normals(
+            &folder,
+            "out/wave_normal.exr",
+            &NormalMap::new(Size::new(64, 64).unwrap(), format, codes).unwrap(),
+        );
+        bake(&["--check-plan=only", "-q"]).ends(1).says("error: plan broken: ", &["wave_normal.exr"]);
+    }
+}
+
+#[test]
+fn settings_and_predictions_that_were_changed_by_hand_are_noticed() {
+    let check = ["--check-plan", "-q"];
+    let precision = |folder: &Folder| change(folder, "precision = \"exact\"", "precision = \"fast\"");
+    assert_broken(precision, &check, "_h.png", &["precision is fast, and the plan has exact"]);
+    assert_broken(|_| (), &["--check-plan", "-q", "--precision", "fast"], "wave_h.png", &["precision is fast"]);
+    let scale = |folder: &Folder| change(folder, "scale = 8\n", "scale = 8.001\n");
+    assert_broken(scale, &check, "wave_h.png", &["scale is 8.001, and the plan has 8"]);
+    let loosened = |folder: &Folder| {
+        let text = std::fs::read_to_string(folder.path("texbake.toml")).unwrap();
+        let line = text.lines().find(|line| line.starts_with("degrees = 0.")).unwrap().to_owned();
+        change(folder, &line, "degrees = 90.0");
+    };
+    assert_broken(loosened, &check, "_h.png", &["90 degrees are predicted, and the scene allows 0.3"]);
+    // A height map that came later is no error, but it is told.
+    let folder = textures();
+    folder.grey8("tex/new_h.png", 16, 16, |_, _| 128);
+    let run = bake(&folder, &["--check-plan"]).ends(0);
+    run.says("warning: tex", &["new_h.png", "the plan does not have it, and it gets no map"]);
+}
+
+#[test]
+fn a_check_that_is_cancelled_says_so() {
+    let folder = textures();
+    let text = std::fs::read_to_string(folder.path("texbake.toml")).unwrap();
+    let prediction = predictions("texbake.toml".as_ref(), &text).unwrap().remove(0);
+    let (maps, monitor) = (Maps { normal: None, parallax: None }, Monitor::default());
+    assert!(prediction.check(&folder.path("tex").join(&prediction.file), &maps, &monitor).is_ok());
+    monitor.cancel();
+    let cancelled = prediction.check(&folder.path("tex").join(&prediction.file), &maps, &monitor);
+    assert!(matches!(cancelled, Err(Error::Cancelled)), "{cancelled:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_name_may_have_any_character() {
+    let folder = Folder::new();
+    folder.grey16("tex/back\\slash_h.png", 32, 32, bumps16);
+    folder.file("tex/scene.toml", scene("normal = 0.3\nparallax = 9", "scale = 3"));
+    folder.run(&["plan", "tex/scene.toml", "-o", "texbake.toml"]).ends(0);
+    let run = bake(&folder, &["--check-plan"]).ends(0);
+    assert!(run.stdout.ends_with("the plan holds: 1 height map\n"), "{}", run.stdout);
+}
+
+#[test]
 fn maps_that_were_not_planned_and_height_maps_that_changed_are_noticed() {
     let check = ["--check-plan", "-q"];
     let none =
@@ -172,5 +274,14 @@ fn a_check_needs_predictions() {
     // A prediction that was changed by hand is an error with its line.
     let folder = textures();
     change(&folder, "tangent-space", "tangents-space");
-    bake(&folder, &["--check-plan"]).ends(2).says("error: texbake.toml:", &["unknown field `tangents-space`"]);
+    let run = bake(&folder, &["--check-plan"]).ends(2);
+    run.says("error: texbake.toml:", &["unknown field `tangents-space`", "run texbake plan again"]);
+    for (from, to, what) in [
+        ("tangent-space = \"cotangent frame\"", "tangent-space = \"frame\"", "frame: it must be tangents, cotangent"),
+        ("method = \"steps ", "method = \"stairs ", "method is stairs "),
+    ] {
+        let folder = textures();
+        change(&folder, from, to);
+        bake(&folder, &["--check-plan"]).ends(2).says("error: texbake.toml:", &[what, "run texbake plan again"]);
+    }
 }

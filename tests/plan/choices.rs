@@ -2,6 +2,8 @@
 
 use super::{decision, plan, plan_error, plan_of_one, scene, setting, wave};
 use crate::cli::support::Folder;
+use texbake::material::ParallaxMethod;
+use texbake::plan::TangentSpace;
 
 /// A ramp that rises by one code a texel: its slope is s / 255, and half of that at the borders.
 fn ramp(folder: &Folder) {
@@ -74,9 +76,12 @@ fn a_distance_is_pixels_per_texel() {
                  [tolerance]\nnormal = 1\nparallax = 99\n[[material]]\nfiles = 'wave_h.png'\nsize = [2.0, 1.5]\n";
     // 1080 rows show 2 * 1.5 * tan(30 degrees) = 1.7320508: 623.538291 pixels a unit. A texel is 2/64 wide, 1.5/32 high.
     let seen = |height: &str| plan_of_one(&folder, &format!("{scene}{height}")).prediction.seen.pixels_per_texel;
-    assert!((seen("depth = 0.1") - 623.538_291 * 1.5 / 32.0).abs() < 1e-6);
-    // A scale in texels with a size to see it by.
-    assert!((seen("scale = 3") - 623.538_291 * 1.5 / 32.0).abs() < 1e-6);
+    // A scale in texels with a size to see it by sees the same.
+    for height in ["depth = 0.1", "scale = 3"] {
+        let [x, y] = seen(height);
+        assert!((x - 623.538_291 * 2.0 / 64.0).abs() < 1e-6, "{x}");
+        assert!((y - 623.538_291 * 1.5 / 32.0).abs() < 1e-6, "{y}");
+    }
 }
 
 #[test]
@@ -135,10 +140,58 @@ fn tolerances_that_cannot_be_met_are_named_with_the_best_that_can() {
 
     let error = plan_error(&folder, &scene("normal = 0.4\nparallax = 9\nbytes-per-texel = 1.5", "scale = 2"));
     let text =
-        "the tolerance bytes-per-texel of 1.5 bytes a texel cannot be met: the best is 2 bytes a texel, with unorm";
+        "the tolerance bytes-per-texel of 1.5 bytes per texel cannot be met: the best is 2 bytes per texel, with unorm";
     assert!(error.contains(text), "{error}");
     let file = plan_of_one(&folder, &scene("normal = 0.4\nparallax = 9\nbytes-per-texel = 2", "scale = 2"));
     assert_eq!(setting(&file, "bits"), Some("8"));
+    assert!(plan_error(&folder, &scene("normal = 0.000001\nparallax = 9", "scale = 2")).contains("format = \"exr\""));
+
+    // All maps that cannot be planned are told.
+    folder.grey16("waves_h.png", 64, 64, |x, y| wave(y, x));
+    let error = plan_error(&folder, &scene("normal = 0.000001\nparallax = 9", "scale = 2"));
+    for part in ["wave_h.png: the tolerance normal", "waves_h.png: the tolerance normal"] {
+        assert!(error.contains(part), "{part:?} is not in {error}");
+    }
+}
+
+#[test]
+fn of_all_resolutions_the_nearest_to_the_tolerance_is_told() {
+    let folder = Folder::new();
+    folder.grey16("wave_h.png", 64, 64, wave);
+    let file = |bounds: &str| {
+        let material = "scale = 2\nview = { texels-per-pixel = 4 }";
+        scene(&format!("normal = 0.4\nparallax = 9\n{bounds}"), material)
+    };
+    let free = plan_of_one(&folder, &file(""));
+    assert_eq!(setting(&free, "shrink"), Some("2"));
+    // Half of the texels of each axis, two bytes each.
+    let error = plan_error(&folder, &file("bytes-per-texel = 0.3"));
+    for part in ["the tolerance bytes-per-texel of 0.3 bytes per texel cannot", "the best is 0.5 bytes", "at shrink 2"]
+    {
+        assert!(error.contains(part), "{part:?} is not in {error}");
+    }
+    plan_of_one(&folder, &file("bytes-per-texel = 0.5"));
+}
+
+#[test]
+fn a_map_that_is_resampled_along_one_axis_gets_the_same() {
+    let seen = |width: usize, tolerance: &str| {
+        let folder = Folder::new();
+        folder.grey16("wave_h.png", width, 64, |x, y| wave(64 * (2 * y + 1) / 128, 64 * x / width));
+        let scene = "[view]\ndistance = 1\nfov = 60\nresolution = [640, 480]\nangle = 45\n\
+                     [[material]]\nfiles = '*'\nsize = [1, 1]\ndepth = 0.1\n[tolerance]\nnormal = 1\n";
+        plan_of_one(&folder, &format!("{scene}{tolerance}")).prediction.parallax
+    };
+    // The offset of white, 0.05 cot 45 degrees, by 480 / (2 tan 30 degrees) pixels a metre; the wave comes to 1 but for
+    // a sixty-fifth thousandth and where its texels lie.
+    for width in [64, 128, 256] {
+        let none = seen(width, "parallax = 30");
+        assert_eq!(none.method, ParallaxMethod::None);
+        assert!((none.pixels - 0.05 * 415.692_194).abs() < 0.03, "{width}: {}", none.pixels);
+    }
+    let methods = [64, 128, 256].map(|width| seen(width, "parallax-99 = 3").method);
+    assert_ne!(methods[0], ParallaxMethod::None);
+    assert_eq!(methods, [methods[0]; 3]);
 }
 
 #[test]
@@ -174,7 +227,7 @@ fn tangents_are_kept_where_a_cotangent_frame_shows_other_normals() {
         (decision(&file, "tangent space").clone(), file.prediction.tangent_space)
     };
     let (flat, name) = choice("square.obj");
-    assert_eq!((flat.choice.as_str(), name.as_str()), ("cotangent frame", "cotangent frame"));
+    assert_eq!((flat.choice.as_str(), name), ("cotangent frame", TangentSpace::CotangentFrame));
     assert!(flat.reason.contains("in 8 pixels"), "{}", flat.reason);
     let (ball, _) = choice("ball.obj");
     assert_eq!((ball.choice.as_str(), ball.rejected[0].what.as_str()), ("tangents", "cotangent frame"), "{ball:?}");

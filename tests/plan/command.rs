@@ -2,6 +2,9 @@
 
 use super::{scene, wave};
 use crate::cli::support::Folder;
+use texbake::plan::{Plan, Scene};
+use texbake::stream::Monitor;
+use texbake::{Baker, Error};
 
 fn folder() -> Folder {
     let folder = Folder::new();
@@ -40,6 +43,11 @@ fn only_a_plan_is_overwritten() {
     assert_eq!(std::fs::read_to_string(folder.path("t.toml")).unwrap(), "[defaults]\nscale = 24\n");
     plan(&["--force"]).ends(0);
     assert!(std::fs::read_to_string(folder.path("t.toml")).unwrap().contains("[[plan]]"));
+    // What is read is never overwritten, nor is what is no settings file by its name.
+    let run = folder.run(&["plan", "tex/scene.toml", "-o", "tex/wave_h.png", "--force"]);
+    run.ends(1).says("error: tex/wave_h.png", &["settings are TOML", ".toml"]);
+    let run = folder.run(&["plan", "tex/scene.toml", "-o", "tex/scene.toml", "--force"]).ends(1);
+    run.says("error: tex/scene.toml", &["it is the scene itself", "-o"]);
     // A plan that fails leaves the old one.
     folder.file("tex/scene.toml", scene("normal = 1e-9\nparallax = 9", "scale = 2"));
     let before = std::fs::read(folder.path("t.toml")).unwrap();
@@ -91,6 +99,25 @@ fn help_has_every_key_and_its_scene_is_one() {
     folder.file("help.toml", format!("  folder = {example}"));
     let run = folder.run(&["plan", "help.toml", "-o", "t.toml"]).ends(1);
     run.says("error: help.toml:", &["no height map in textures matches cloth/*, dem_*"]);
+}
+
+#[test]
+fn the_same_scene_gives_the_same_bytes() {
+    let folder = folder();
+    let plans = ["a.toml", "b.toml"].map(|output| {
+        folder.run(&["plan", "tex/scene.toml", "-o", output, "-q", "--backend", "cpu"]).ends(0);
+        std::fs::read_to_string(folder.path(output)).unwrap()
+    });
+    assert_eq!(plans[0], plans[1]);
+}
+
+#[test]
+fn a_plan_that_is_cancelled_says_so() {
+    let folder = folder();
+    let monitor = Monitor::default();
+    monitor.cancel();
+    let plan = Plan::new(&Scene::read(&folder.path("tex/scene.toml")).unwrap(), &Baker::cpu(), &monitor, &mut |_| ());
+    assert!(matches!(plan, Err(Error::Cancelled)));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Whether there is parallax, and by which method.
 
-use super::{decision, plan_error, plan_of_one, scene, setting, wave};
+use super::{decision, plan, plan_error, plan_of_one, scene, setting, wave};
 use crate::cli::support::Folder;
 use texbake::plan::FilePlan;
 
@@ -9,8 +9,8 @@ fn blocks(folder: &Folder) {
     folder.grey8("blocks_h.png", 64, 64, |x, y| if (x / 8 + y / 8) % 2 == 0 { 0 } else { 255 });
 }
 
-fn method(file: &FilePlan) -> &str {
-    &file.prediction.parallax.method
+fn method(file: &FilePlan) -> String {
+    file.prediction.parallax.method.to_string()
 }
 
 #[test]
@@ -25,7 +25,7 @@ fn offsets_below_the_tolerance_are_not_worth_a_map() {
     let offset = |file: &FilePlan| file.prediction.parallax.pixels;
     for (tolerance, texels_per_pixel, pixels) in [("3.4642", "1", 3.464_101_6), ("0.34642", "10", 0.346_410_16)] {
         let file = file(tolerance, texels_per_pixel);
-        assert_eq!((method(&file), decision(&file, "parallax").choice.as_str()), ("none", "none"));
+        assert_eq!((method(&file).as_str(), decision(&file, "parallax").choice.as_str()), ("none", "none"));
         assert!((offset(&file) - pixels).abs() < 1e-6, "{}", offset(&file));
     }
     for (tolerance, texels_per_pixel) in [("3.464", "1"), ("0.3464", "10")] {
@@ -41,14 +41,14 @@ fn straight_from_above_nothing_moves() {
     blocks(&folder);
     let view = "scale = 40\nview = { angle = 90 }";
     let file = plan_of_one(&folder, &scene("normal = 60\nparallax = 0.001", view));
-    assert_eq!((method(&file), file.prediction.parallax.pixels), ("none", 0.0));
+    assert_eq!((method(&file).as_str(), file.prediction.parallax.pixels), ("none", 0.0));
 }
 
 #[test]
 fn steep_steps_take_relief_intersection_and_gentle_hills_a_few_lookups() {
     let folder = Folder::new();
     blocks(&folder);
-    let file = plan_of_one(&folder, &scene("normal = 60\nparallax = 0.5", "scale = 16"));
+    let file = plan_of_one(&folder, &scene("normal = 60\nparallax-99 = 0.5", "scale = 16"));
     assert!(method(&file).starts_with("relief "), "{}", method(&file));
     assert_eq!((setting(&file, "maps"), &file.prediction.parallax.map), (Some("normal"), &None));
     let rejected: Vec<&str> = decision(&file, "parallax").rejected.iter().map(|it| it.what.as_str()).collect();
@@ -64,14 +64,38 @@ fn steep_steps_take_relief_intersection_and_gentle_hills_a_few_lookups() {
     assert_eq!(method(&file), "steps 2");
     let rejected = &decision(&file, "parallax").rejected;
     assert!(
-        rejected.iter().any(|it| it.what == "limited" && it.why.contains("1 byte a texel is left")),
+        rejected.iter().any(|it| it.what == "limited" && it.why.contains("; it reads 2 bytes per texel, of 1 left")),
         "{rejected:?}"
     );
     assert!(rejected.iter().any(|it| it.what == "steps 1"), "{rejected:?}");
     assert_eq!(setting(&file, "maps"), Some("normal,parallax"));
     assert!(file.prediction.parallax.pixels <= 0.19);
     let map = file.prediction.parallax.map.as_ref().unwrap();
-    assert_eq!((map.texels, map.bytes), ([64, 64], 64 * 64 * map.bits.parse::<usize>().unwrap() / 8));
+    assert_eq!((map.texels, map.bytes), ([64, 64], 64 * 64 * map.bits.bytes()));
+}
+
+#[test]
+fn silhouettes_cannot_be_had_and_the_error_tells_the_way_out() {
+    let folder = Folder::new();
+    blocks(&folder);
+    let error = plan_error(&folder, &scene("normal = 60\nparallax = 0.5", "scale = 16"));
+    for part in ["the tolerance parallax of 0.5 pixels cannot be met", "with relief ", "parallax-99 = 0.5"] {
+        assert!(error.contains(part), "{part:?} is not in {error}");
+    }
+}
+
+#[test]
+fn an_offset_that_few_pixels_see_does_not_count_among_99_of_100() {
+    let folder = Folder::new();
+    // Two texels of 4096 are white, the others lie in the plane, as near as a code can.
+    folder.grey16("spot_h.png", 64, 64, |x, y| if y == 30 && (x == 30 || x == 31) { 65_535 } else { 32_768 });
+    let choice = |tolerance: &str| plan_of_one(&folder, &scene(&format!("normal = 90\n{tolerance}"), "scale = 4"));
+    assert_eq!(method(&choice("parallax-99 = 0.1")), "none");
+    let all = choice("parallax = 2.1");
+    // s/2 cot 45 degrees.
+    assert!(method(&all) == "none" && (all.prediction.parallax.pixels - 2.0).abs() < 1e-4);
+    let wanted = scene("normal = 90\nparallax = 0.1", "scale = 4");
+    assert!(plan(&folder, &wanted).map_or(true, |plan| method(&plan.files[0]) != "none"));
 }
 
 #[test]
@@ -93,13 +117,12 @@ fn silhouettes_may_be_left_out_of_the_account() {
 fn bytes_and_milliseconds_bound_the_choice() {
     let folder = Folder::new();
     blocks(&folder);
-    let bounded = |bounds: &str| scene(&format!("normal = 1.5\nparallax = 0.5\n{bounds}"), "scale = 16");
+    let bounded = |bounds: &str| scene(&format!("normal = 1.5\nparallax-99 = 0.5\n{bounds}"), "scale = 16");
     // Three bytes of normals, which are too steep for two, and one of heights.
     let file = plan_of_one(&folder, &bounded("bytes-per-texel = 4"));
-    assert!(decision(&file, "maps").reason.ends_with("in all 4 bytes a texel of the height map, of 4 allowed"));
+    assert!(decision(&file, "maps").reason.ends_with("in all 4 bytes per texel of the height map, of 4 allowed"));
     let error = plan_error(&folder, &bounded("bytes-per-texel = 3.5"));
-    let text =
-        "the tolerance bytes-per-texel of 3.5 bytes a texel cannot be met: the best is 4 bytes a texel, with relief";
+    let text = "the tolerance bytes-per-texel of 3.5 bytes per texel cannot be met: the best is 4 bytes per texel, with relief";
     assert!(error.contains(text), "{error}");
 
     let screen = |bounds: &str| bounded(bounds).replace("[view]", "[view]\nresolution = [1920, 1080]");
@@ -109,5 +132,7 @@ fn bytes_and_milliseconds_bound_the_choice() {
         "{error}"
     );
     let file = plan_of_one(&folder, &screen("milliseconds = 1e9"));
-    assert!(decision(&file, "parallax").reason.contains(" ms on the CPU's threads here, of 1000000000 allowed"));
+    let times = decision(&file, "parallax").times.clone().unwrap();
+    assert!(times.ends_with(" ms on all threads of this CPU, of 1000000000 allowed"), "{times}");
+    assert!(file.prediction.parallax.milliseconds.is_some_and(|takes| takes > 0.0 && takes < 1e9));
 }

@@ -1,72 +1,21 @@
-//! A scene: which materials it has, how they are seen, and what may go wrong.
+//! Scene files.
 
-use super::prediction::ErrorOf;
-use super::text::{Text, document};
-use super::view::{Sight, View, ViewText};
-use crate::batch::{Found, OUTPUT_EXTENSIONS, Search};
+use super::{Facts, Scene, SceneMaterial, Tolerance};
+use crate::batch::{FileGlob, OUTPUT_EXTENSIONS};
 use crate::error::{Error, Result};
 use crate::exact::{Rational, Scale};
 use crate::io::{Channel, ColorSpace, RawLayout, ReadOptions};
 use crate::map::{Convention, Edges};
-use crate::ops::bake::{BakeOptions, Filter};
-use globset::{GlobBuilder, GlobMatcher};
-use serde::Deserialize;
+use crate::ops::bake::Filter;
+use crate::plan::prediction::ErrorOf;
+use crate::plan::text::{Text, document, line};
+use crate::plan::view::{Sight, View, ViewText};
+use serde::de::{self, Deserialize, Deserializer, SeqAccess, Visitor};
+use std::fmt;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 
-/// A scene file.
-#[derive(Debug)]
-pub struct Scene {
-    /// The file.
-    pub path: PathBuf,
-    /// The folder that holds the textures: the one that `bake` is given.
-    pub folder: PathBuf,
-    /// What the names of height maps end in, if the scene says so.
-    pub suffixes: Option<Vec<String>>,
-    materials: Vec<Material>,
-}
-
-/// Height maps that are seen alike.
-#[derive(Debug)]
-pub(super) struct Material {
-    globs: Vec<GlobMatcher>,
-    /// Where it begins in the file.
-    line: usize,
-    pub facts: Facts,
-    pub view: View,
-    pub tolerance: Tolerance,
-    /// Width and height that the map covers, in the unit of the view's distance.
-    pub extent: Option<[Rational; 2]>,
-    pub format: String,
-    pub model: Option<PathBuf>,
-}
-
-/// What a material is, whatever is baked of it.
-#[derive(Debug, Clone)]
-pub(super) struct Facts {
-    pub read: ReadOptions,
-    pub scale: Scale,
-    pub filter: Filter,
-    pub edges: Edges,
-    pub convention: Convention,
-}
-
-/// What may go wrong.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tolerance {
-    /// The largest error of a normal in degrees.
-    pub normal: f64,
-    /// The error of a parallax offset in pixels.
-    pub parallax: f64,
-    /// Of which pixels.
-    pub parallax_of: ErrorOf,
-    /// The most bytes that the maps of a height map may have, over its texels.
-    pub bytes_per_texel: Option<f64>,
-    /// The most milliseconds that parallax mapping may take for a screen full of the material.
-    pub milliseconds: Option<f64>,
-}
-
-#[derive(Deserialize)]
+#[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct SceneText {
     folder: Option<PathBuf>,
@@ -79,14 +28,10 @@ struct SceneText {
     material: Vec<Spanned<MaterialText>>,
 }
 
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum OneOrMany {
-    One(String),
-    Many(Vec<String>),
-}
+/// One text or a list of them.
+struct OneOrMany(Vec<String>);
 
-#[derive(Deserialize, Default, Clone)]
+#[derive(serde::Deserialize, Default, Clone)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ToleranceText {
     normal: Option<Spanned<f64>>,
@@ -97,7 +42,7 @@ struct ToleranceText {
     milliseconds: Option<Spanned<f64>>,
 }
 
-#[derive(Deserialize)]
+#[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct MaterialText {
     files: Spanned<OneOrMany>,
@@ -118,95 +63,56 @@ struct MaterialText {
     tolerance: ToleranceText,
 }
 
-impl OneOrMany {
-    fn into_vec(self) -> Vec<String> {
-        match self {
-            Self::One(text) => vec![text],
-            Self::Many(texts) => texts,
-        }
-    }
-}
+impl<'de> Deserialize<'de> for OneOrMany {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Texts;
+        impl<'de> Visitor<'de> for Texts {
+            type Value = OneOrMany;
 
-impl Scene {
-    /// Reads a scene file.
-    ///
-    /// # Errors
-    /// [`Error::Io`], or [`Error::File`] with file and line.
-    pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(Error::io(path))?;
-        Self::parse(path, &text)
-    }
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("text, or a list of texts")
+            }
 
-    fn parse(path: &Path, text: &str) -> Result<Self> {
-        let scene: SceneText = document(path, text)?;
-        let folder_of_scene = path.parent().unwrap_or(Path::new(""));
-        let reader = Reader { path, text, folder: folder_of_scene };
-        if scene.material.is_empty() {
-            let remedy = "list what the scene shows, as [[material]] with files = \"walls/*\"";
-            return Err(reader.error(0, "it has no material", remedy));
-        }
-        let general = (&scene.view, &scene.tolerance);
-        let materials = scene.material.into_iter().map(|material| reader.material(material, general));
-        Ok(Self {
-            path: path.into(),
-            folder: match scene.folder {
-                Some(folder) => folder_of_scene.join(folder),
-                None if folder_of_scene.as_os_str().is_empty() => ".".into(),
-                None => folder_of_scene.into(),
-            },
-            suffixes: scene.suffix.map(OneOrMany::into_vec),
-            materials: materials.collect::<Result<_>>()?,
-        })
-    }
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<OneOrMany, E> {
+                Ok(OneOrMany(vec![text.into()]))
+            }
 
-    /// The height maps in the folder, each with the last material that is for it; `None`: the scene does not show it.
-    ///
-    /// # Errors
-    /// [`Error::File`] for a material without height map, and folders that cannot be searched.
-    pub(super) fn files(&self) -> Result<Vec<(Found, Option<&Material>)>> {
-        let search = self.suffixes.clone().map_or_else(|| Ok(Search::default()), Search::new)?;
-        let (found, errors) = search.find(std::slice::from_ref(&self.folder));
-        if let Some(error) = errors.into_iter().next() {
-            return Err(error);
-        }
-        for material in &self.materials {
-            if !found.iter().any(|map| material.is_for(&below(map))) {
-                let at = format!("{}:{}", self.path.display(), material.line);
-                let reason = format!("no height map in {} matches {}", self.folder.display(), material.globs());
-                let remedy = format!("correct files or folder; names of height maps end in {}", {
-                    search.suffixes().join(", ")
-                });
-                return Err(Error::file(at, reason, remedy));
+            fn visit_seq<A: SeqAccess<'de>>(self, mut texts: A) -> Result<OneOrMany, A::Error> {
+                let mut all = Vec::new();
+                while let Some(text) = texts.next_element()? {
+                    all.push(text);
+                }
+                Ok(OneOrMany(all))
             }
         }
-        let material_of = |map: &Found| self.materials.iter().rev().find(|material| material.is_for(&below(map)));
-        Ok(found.into_iter().map(|map| (map.clone(), material_of(&map))).collect())
+        deserializer.deserialize_any(Texts)
     }
 }
 
-/// The path of a file below the folder that was searched, which globs match.
-pub(super) fn below(map: &Found) -> PathBuf {
-    map.folder.join(map.path.file_name().unwrap_or_default())
-}
-
-impl Material {
-    /// As the globs of texbake.toml: one without a folder matches names in every folder.
-    fn is_for(&self, path: &Path) -> bool {
-        let name = path.file_name().map_or(path, Path::new);
-        self.globs.iter().any(|glob| glob.is_match(if glob.glob().glob().contains('/') { path } else { name }))
+/// The scene of a file.
+///
+/// # Errors
+/// [`Error::File`] with file and line.
+pub(super) fn scene(path: &Path, text: &str) -> Result<Scene> {
+    let scene: SceneText = document(path, text, "correct it; texbake plan --help has the keys")?;
+    let folder_of_scene = path.parent().unwrap_or(Path::new(""));
+    let reader = Reader { path, text, folder: folder_of_scene };
+    if scene.material.is_empty() {
+        let remedy = "list what the scene shows, as [[material]] with files = \"walls/*\"";
+        return Err(reader.error(0, "it has no material", remedy));
     }
-
-    fn globs(&self) -> String {
-        self.globs.iter().map(|glob| glob.glob().glob()).collect::<Vec<_>>().join(", ")
-    }
-}
-
-impl Facts {
-    /// A bake without maps; those that are wanted are to be put in.
-    pub fn bake(&self) -> BakeOptions {
-        let Self { scale, filter, edges, .. } = *self;
-        BakeOptions { scale, filter, edges, normal: None, ..BakeOptions::default() }
-    }
+    let general = (&scene.view, &scene.tolerance);
+    let materials = scene.material.into_iter().map(|material| reader.material(material, general));
+    Ok(Scene {
+        path: path.into(),
+        folder: match scene.folder {
+            Some(folder) => folder_of_scene.join(folder),
+            None if folder_of_scene.as_os_str().is_empty() => ".".into(),
+            None => folder_of_scene.into(),
+        },
+        suffixes: scene.suffix.map(|OneOrMany(suffixes)| suffixes),
+        materials: materials.collect::<Result<_>>()?,
+    })
 }
 
 /// A scene file as text, to say where something is wrong.
@@ -221,12 +127,13 @@ impl Reader<'_> {
         &self,
         material: Spanned<MaterialText>,
         (view, tolerance): (&ViewText, &ToleranceText),
-    ) -> Result<Material> {
+    ) -> Result<SceneMaterial> {
         let start = material.span().start;
         let text = material.into_inner();
         let files = text.files.span().start;
-        let globs =
-            text.files.into_inner().into_vec().iter().map(|glob| self.glob(glob, files)).collect::<Result<_>>()?;
+        let OneOrMany(globs) = text.files.into_inner();
+        let glob = |glob: &String| FileGlob::new(glob).map_err(|error| self.error(files, error, "correct the glob"));
+        let globs = globs.iter().map(glob).collect::<Result<_>>()?;
         let extent = text.size.as_ref().map(|size| size.get_ref().each_ref().map(|side| side.0));
         if let Some(size) =
             text.size.as_ref().filter(|_| extent.is_some_and(|it| it.iter().any(|it| it.numerator() <= 0)))
@@ -243,7 +150,7 @@ impl Reader<'_> {
             }
             (None, _, _) => {
                 let remedy = "write scale = 24 (texels), or size = [2.0, 2.0] and depth = 0.1";
-                return Err(self.error(start, "how high this material's white is is missing", remedy));
+                return Err(self.error(start, "scale, or size and depth, is missing", remedy));
             }
         };
         let format = text.format.map_or(Ok("png".into()), |format| {
@@ -276,12 +183,11 @@ impl Reader<'_> {
             convention: text.convention.map(|it| it.0).unwrap_or_default(),
         };
         let model = text.model.map(|model| self.folder.join(model));
-        Ok(Material { globs, line: self.line(start), facts, view, tolerance, extent, format, model })
-    }
-
-    fn glob(&self, glob: &str, at: usize) -> Result<GlobMatcher> {
-        let matcher = GlobBuilder::new(glob).literal_separator(true).build();
-        matcher.map(|glob| glob.compile_matcher()).map_err(|error| self.error(at, error, "correct the glob"))
+        if let Some(model) = model.as_ref().filter(|model| !model.is_file()) {
+            let reason = format!("its model {} is not there", model.display());
+            return Err(self.error(start, reason, "correct model: it is looked for from the scene file on"));
+        }
+        Ok(SceneMaterial { globs, line: self.line(start), facts, view, tolerance, extent, format, model })
     }
 
     fn view(&self, view: &ViewText, extent: Option<[Rational; 2]>, start: usize) -> Result<View> {
@@ -291,7 +197,7 @@ impl Reader<'_> {
         if matches!(view.sight, Sight::Perspective { .. }) && extent.is_none() {
             let remedy = "write size = [2.0, 2.0], in the unit of the distance; or texels-per-pixel in the view, for a \
                           distance";
-            return Err(self.error(start, "how large this material is is missing: it is seen from a distance", remedy));
+            return Err(self.error(start, "size is missing: this material is seen from a distance", remedy));
         }
         Ok(view)
     }
@@ -331,7 +237,7 @@ impl Reader<'_> {
     }
 
     fn line(&self, at: usize) -> usize {
-        super::text::line(self.text, at)
+        line(self.text, at)
     }
 
     fn error(&self, at: usize, reason: impl ToString, remedy: impl Into<String>) -> Error {
