@@ -46,7 +46,7 @@ impl Sides {
         let largest = largest_offset(heights, options, seen)?;
         let elevations = elevations(seen.angle).into_iter().map(|elevation| {
             let views = Views::at_elevation(elevation, PIXELS, SEED);
-            let truth = views.offsets(material, truth(material, elevation)?, monitor)?;
+            let truth = views.truth(material, monitor)?;
             Ok((views, truth))
         });
         Ok(Self { seen, units, elevations: elevations.collect::<Result<_>>()?, largest })
@@ -101,11 +101,6 @@ fn elevations(shallowest: f64) -> Vec<f64> {
     let mut elevations: Vec<f64> = (0..ELEVATIONS).map(|i| shallowest + f64::from(i) * step).collect();
     elevations.dedup();
     elevations
-}
-
-/// What is right at an elevation: twice as many steps as the finest method that is tried.
-fn truth(material: &Material, elevation: f64) -> Result<ParallaxMethod> {
-    Ok(ParallaxMethod::Relief { steps: 2 * steps(material, elevation)?, bisections: 16 })
 }
 
 /// Steps of [`Material::truth`] at an elevation, along the axis that takes more of them. At a silhouette one step more or
