@@ -28,6 +28,7 @@ mod folder;
 mod formats;
 mod frames;
 mod front;
+mod fronts;
 #[cfg(feature = "gpu")]
 mod gpu_time;
 mod maps;
