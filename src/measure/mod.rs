@@ -68,4 +68,5 @@ pub use parallax::{OffsetFigure, OffsetTime, parallax_methods};
 pub use region::Region;
 pub use report::{Input, Machine, Report};
 pub use steps::Progress;
+#[cfg(feature = "cli")]
 pub(crate) use time::median_time;
