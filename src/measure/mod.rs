@@ -57,7 +57,6 @@ pub use front::{Candidate, Front, Statistic, Step, digits, pareto_front};
 #[cfg(all(test, feature = "gpu"))]
 pub(crate) use gpu_time::WGSL as OFFSET_TIME;
 #[cfg(feature = "cli")]
-#[cfg(feature = "cli")]
 pub(crate) use maps::timed;
 pub use maps::{NormalFigure, ParallaxFigure, Stored};
 pub use normals::TrueNormals;
