@@ -341,7 +341,7 @@ pub fn comparison_table(comparisons: &[Comparison]) -> String {
         if let Some(bound) = comparison.bound {
             let cell = |errors: Errors, bound: f64| match errors.count {
                 0 => String::new(),
-                _ => format!("{}/{}/{}", digits(errors.largest), digits(errors.mean), digits(bound)),
+                _ => format!("{}/{}/{}", narrow(errors.largest), narrow(errors.mean), narrow(bound)),
             };
             let name = comparison.operation.to_owned();
             let cells = [cell(codes, bound.codes), cell(ulps, bound.ulps), cell(degrees, bound.degrees)];
@@ -349,6 +349,17 @@ pub fn comparison_table(comparisons: &[Comparison]) -> String {
         }
     }
     if errors.is_empty() { table.trim_fmt() } else { format!("{}\n{}", table.trim_fmt(), errors.trim_fmt()) }
+}
+
+/// A number in six characters at most where [`digits`] has eight: three of them stand in a column.
+fn narrow(number: f64) -> String {
+    match number {
+        0.0 => "0".into(),
+        0.01..1.0 => format!("{number:.3}").trim_end_matches('0').into(),
+        1.0..100.0 => format!("{number:.1}").trim_end_matches(".0").into(),
+        100.0..1e6 => format!("{number:.0}"),
+        _ => format!("{number:.1e}"),
+    }
 }
 
 fn plain_table(header: &[&str], numbers: &[usize]) -> Table {

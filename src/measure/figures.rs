@@ -2,13 +2,14 @@
 
 use super::blends::{self, BlendFigure, Layers, blend_figures};
 use super::frames::{Extent, FrameFigure, frame_figures};
-use super::front::{Front, Statistic};
-use super::maps::{NormalFigure, PRECISIONS, ParallaxFigure, Stored, normal_figures, parallax_figures};
+use super::front::Front;
+use super::fronts;
+use super::maps::{NormalFigure, PRECISIONS, ParallaxFigure, normal_figures, parallax_figures};
 use super::parallax::{OffsetFigure, OffsetTime, offset_figures};
 use super::region::{Region, quarter_turned, scale_for};
 use super::steps::{Progress, Steps};
 use super::surfaces::SURFACES;
-use super::{Views, normal_formats, parallax_formats};
+use super::{normal_formats, parallax_formats};
 use crate::baker::Baker;
 use crate::error::{Error, Result};
 use crate::map::{Convention, HeightMap};
@@ -92,6 +93,17 @@ impl MeasureOptions {
         Ok(())
     }
 
+    /// Fails if a ray along one of the axes cannot be followed; others cross fewer texels.
+    fn check_views(&self, material: &Material) -> Result<()> {
+        for elevation in self.elevations() {
+            let (z, across) = elevation.to_radians().sin_cos();
+            for eye in [[across, 0.0, z], [0.0, across, z]] {
+                material.truth(eye.map(|part| part as f32))?;
+            }
+        }
+        Ok(())
+    }
+
     /// The longest side of the part that is measured, in texels.
     fn side(&self) -> usize {
         if self.quick { 256 } else { 2048 }
@@ -141,10 +153,8 @@ pub fn measure(
     let of_detail = BakeOptions { scale: scale_for(axes, detail.size())?, ..bake };
     let layers = Layers { base: (&heights, bake), detail: (&detail, of_detail) };
     let material = Material::bake(&Baker::cpu(), &heights, &BakeOptions { normal: None, parallax: None, ..bake })?;
-    for elevation in options.elevations() {
-        // Before hours of work.
-        Views::at_elevation(elevation, 1, options.seed).truth(&material, monitor)?;
-    }
+    // Before hours of work.
+    options.check_views(&material)?;
 
     let of = count(measured, options);
     let steps = &mut Steps { done: 0, of, monitor, watch };
@@ -158,9 +168,9 @@ pub fn measure(
     let offsets = offset_figures(&material, &options.elevations(), pixels, seed, runs, steps)?;
     let (offset_times, notes) = offset_times(measured.devices, &heights, &bake, options, steps)?;
     let frames = frame_figures(&material, measured.models, Extent { pixels, seed, runs }, steps)?;
-    let mut fronts = storage_fronts(&normal_maps, &parallax_maps);
-    fronts.extend(time_fronts(&normal_maps, &parallax_maps, &blends));
-    fronts.extend(parallax_fronts(&offsets, &offset_times, options.elevation));
+    let mut fronts = fronts::storage(&normal_maps, &parallax_maps);
+    fronts.extend(fronts::times(&normal_maps, &parallax_maps, &blends));
+    fronts.extend(fronts::parallax(&offsets, &offset_times, options.elevation));
     Ok(Figures { region, normal_maps, parallax_maps, blends, offsets, offset_times, pixels, frames, fronts, notes })
 }
 
@@ -223,74 +233,4 @@ fn offset_times(
 #[cfg(not(feature = "gpu"))]
 fn gpus(_: &[Baker]) -> usize {
     0
-}
-
-/// What bytes buy: of maps by the first device, in its first precision.
-fn storage_fronts(normal_maps: &[NormalFigure], parallax_maps: &[ParallaxFigure]) -> Vec<Front> {
-    let by = Statistic::Percentile99;
-    let is_first =
-        |stored: &Stored, first: &Stored| (&stored.device, &stored.precision) == (&first.device, &first.precision);
-    let normals = normal_maps.iter().filter(|it| is_first(&it.stored, &normal_maps[0].stored)).map(|it| {
-        let name = format!("{} {} {}", it.stored.encoding, it.stored.bits, it.channels);
-        (name, it.stored.bytes_per_texel as f64, by.of(&it.error_degrees))
-    });
-    let parallax = parallax_maps.iter().filter(|it| is_first(&it.stored, &parallax_maps[0].stored)).map(|it| {
-        let name = format!("{} {}", it.stored.encoding, it.stored.bits);
-        (name, it.stored.bytes_per_texel as f64, by.of(&it.error))
-    });
-    vec![
-        Front::new("storage of normal maps", by, ["bytes per texel", "degrees"], normals),
-        Front::new("storage of parallax maps", by, ["bytes per texel", "of values from -1 to 1"], parallax),
-    ]
-}
-
-/// What time buys on every device: of bakes and of blends.
-fn time_fronts(normal_maps: &[NormalFigure], parallax_maps: &[ParallaxFigure], blends: &[BlendFigure]) -> Vec<Front> {
-    let by = Statistic::Percentile99;
-    let on = |device: &str, name: String| format!("{}: {name}", short_name(device));
-    let normals = normal_maps
-        .iter()
-        .map(|it| (on(&it.stored.device, it.name()), it.stored.nanoseconds_per_texel, by.of(&it.error_degrees)));
-    let parallax = parallax_maps
-        .iter()
-        .map(|it| (on(&it.stored.device, it.stored.name()), it.stored.nanoseconds_per_texel, by.of(&it.error)));
-    let blends = blends.iter().map(|it| {
-        let name = on(&it.device, format!("{}, {} {}", it.method, it.encoding, it.bits));
-        (name, it.nanoseconds_per_texel, by.of(&it.error_degrees))
-    });
-    vec![
-        Front::new("time of bakes", by, ["ns per texel", "degrees"], normals),
-        Front::new("time of bakes of parallax maps", by, ["ns per texel", "of values from -1 to 1"], parallax),
-        Front::new("time of blends", by, ["ns per texel", "degrees"], blends),
-    ]
-}
-
-/// Fetches and time of parallax, whose largest errors are where one bump hides another, by their mean too.
-fn parallax_fronts(offsets: &[OffsetFigure], offset_times: &[OffsetTime], elevation: f64) -> Vec<Front> {
-    let mut fronts = Vec::new();
-    for by in [Statistic::Percentile99, Statistic::Mean] {
-        let seen = || offsets.iter().filter(|figure| figure.elevation_degrees == elevation);
-        let fetches = seen().map(|it| (it.method.clone(), f64::from(it.fetches), by.of(&it.error_texels)));
-        let times = seen().map(|it| (it.method.clone(), it.nanoseconds_per_pixel, by.of(&it.error_texels)));
-        let from = |what: &str| format!("{what} of parallax, seen from {elevation} degrees");
-        fronts.push(Front::new(from("fetches"), by, ["fetches per pixel", "texels"], fetches));
-        fronts.push(Front::new(from("time"), by, ["ns per pixel", "texels"], times));
-    }
-    for times in offset_times.chunk_by(|a, b| a.device == b.device) {
-        let by = Statistic::Mean;
-        let error = |method: &str| {
-            let figure = offsets.iter().find(|it| it.elevation_degrees == elevation && it.method == method)?;
-            Some(by.of(&figure.error_texels))
-        };
-        let on_gpu =
-            times.iter().filter_map(|it| Some((it.method.clone(), it.nanoseconds_per_pixel?, error(&it.method)?)));
-        let name = format!("time of parallax on {}, seen from {elevation} degrees", times[0].device);
-        fronts.push(Front::new(name, by, ["ns per pixel", "texels"], on_gpu));
-    }
-    fronts
-}
-
-/// A device's name up to its first comma or bracket: `cpu`, `gpu llvmpipe`.
-fn short_name(device: &str) -> &str {
-    device.split([',', '(']).next().unwrap_or(device).trim()
 }

@@ -28,6 +28,7 @@ mod folder;
 mod formats;
 mod frames;
 mod front;
+mod fronts;
 #[cfg(feature = "gpu")]
 mod gpu_time;
 mod maps;
@@ -56,7 +57,6 @@ pub use front::{Candidate, Front, Statistic, Step, digits, pareto_front};
 #[cfg(all(test, feature = "gpu"))]
 pub(crate) use gpu_time::WGSL as OFFSET_TIME;
 #[cfg(feature = "cli")]
-#[cfg(feature = "cli")]
 pub(crate) use maps::timed;
 pub use maps::{NormalFigure, ParallaxFigure, Stored};
 pub use normals::TrueNormals;
@@ -67,4 +67,5 @@ pub use parallax::{OffsetFigure, OffsetTime, parallax_methods};
 pub use region::Region;
 pub use report::{Input, Machine, Report};
 pub use steps::Progress;
+#[cfg(feature = "cli")]
 pub(crate) use time::median_time;
