@@ -104,7 +104,9 @@ pub fn model_sheet(
     labels.text(&options.title, [MARGIN, MARGIN], 17, Anchor::Left, FontStyle::Bold)?;
     for (column, paint) in options.paints.iter().enumerate() {
         let at = [left(column) + side / 2, MARGIN + TITLE];
-        labels.text(&paint.words(), at, 13, Anchor::Middle, FontStyle::Bold)?;
+        // The longest words are as wide as a panel of the usual size.
+        let height = (13 * side / 340).clamp(8, 13);
+        labels.text(&paint.words(), at, height, Anchor::Middle, FontStyle::Bold)?;
     }
     labels.finish()?;
     Ok(picture)

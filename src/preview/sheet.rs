@@ -226,6 +226,8 @@ impl Layout<'_> {
     fn label(&self, material: &Material, picture: &mut Picture, told: &[Told]) -> Result<()> {
         let labels = Labels::on(picture)?;
         let [width, height] = self.panel_size();
+        // Words are as wide as a panel of the usual size.
+        let small = |usual: usize| (usual * width / 164).clamp(8, usual);
         labels.text(&self.options.title, [MARGIN, MARGIN], 17, Anchor::Left, FontStyle::Bold)?;
         for (row, &elevation) in self.options.elevations.iter().enumerate() {
             let heading = format!("Seen from {elevation}° above the surface");
@@ -233,7 +235,7 @@ impl Layout<'_> {
             for (column, surface) in self.options.surfaces.iter().enumerate() {
                 let [x, y] = self.panel(row, column);
                 let middle = x + width / 2;
-                labels.text(&surface.to_string(), [middle, y - LINE], 13, Anchor::Middle, FontStyle::Bold)?;
+                labels.text(&surface.to_string(), [middle, y - LINE], small(13), Anchor::Middle, FontStyle::Bold)?;
                 if *surface == Surface::Flat {
                     self.sun(&labels, [x, y])?;
                     if self.has_truth {
@@ -245,7 +247,7 @@ impl Layout<'_> {
                 if let Some(Told { errors, .. }) = told.filter(|_| *surface != Surface::Flat) {
                     let text = format!("mean {:.2}, largest {:.1}", errors.mean, errors.largest);
                     let below = self.heat_panel(row, column)[1] + height + 4;
-                    labels.text(&text, [middle, below], 12, Anchor::Middle, FontStyle::Normal)?;
+                    labels.text(&text, [middle, below], small(12), Anchor::Middle, FontStyle::Normal)?;
                 }
             }
         }

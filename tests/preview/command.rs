@@ -32,24 +32,24 @@ fn pixels(folder: &Folder, name: &str) -> (usize, usize, Vec<u8>) {
 #[test]
 fn a_sheet_is_written_and_its_numbers_are_told() {
     let folder = folder();
-    let run = folder.run(&["preview", "wall_height.png", "-o", "new/sheet.png", "--scale", "6", "--panel", "64"]);
+    let run = folder.run(&["preview", "wall_height.png", "-o", "new/sheet.png", "--scale", "6", "--panel", "128"]);
     let run = run.ends(0);
     run.says("new/sheet.png", &["pixels", " ("]);
     // Two elevations of seven surfaces: all but the flat one and the truth.
     assert_eq!(run.stdout.lines().count(), 14, "{}", run.stdout);
     assert!(run.stdout.lines().all(|line| line.contains("mean") && line.ends_with("texels")));
     let (width, height, bytes) = pixels(&folder, "new/sheet.png");
-    assert_eq!(width, 2 * 12 + 9 * (64 + 6) - 6);
+    assert_eq!(width, 2 * 12 + 9 * (128 + 6) - 6);
     assert!(height > 2 * 2 * 50 && bytes.iter().any(|byte| *byte != bytes[0]));
 
-    let quiet = folder.run(&["preview", "wall_height.png", "-o", "sheet.png", "--scale", "6", "--panel", "64", "-q"]);
+    let quiet = folder.run(&["preview", "wall_height.png", "-o", "sheet.png", "--scale", "6", "--panel", "128", "-q"]);
     let quiet = quiet.ends(0);
     assert_eq!((quiet.stdout.as_str(), quiet.stderr.as_str()), ("", ""));
     assert_eq!(pixels(&folder, "sheet.png").2, bytes);
-    let more = ["--iterations", "8", "--elevations", "70,50,30", "--panel", "64", "-q"];
+    let more = ["--iterations", "8", "--elevations", "70,50,30", "--panel", "128", "-q"];
     folder.run(&[&["preview", "wall_height.png", "-o", "more.png", "--scale", "6"][..], &more].concat()).ends(0);
     let (wider, higher, _) = pixels(&folder, "more.png");
-    assert!(wider == width + 70 && higher > height);
+    assert!(wider == width + 134 && higher > height);
 }
 
 /// Maps that were baked give the picture of the heights that they were baked of, in both conventions, and another one if
@@ -61,7 +61,7 @@ fn maps_that_were_baked_before_are_shown() {
     let dx = ["--convention", "dx"];
     folder.run(&[&["bake", "wall_height.png", "-o", "dx", "--scale", "6"][..], &dx].concat()).ends(0);
     let show = |name: &str, arguments: &[&str]| {
-        let usual = ["preview", "-o", name, "--scale", "6", "--panel", "64", "--backend", "cpu"];
+        let usual = ["preview", "-o", name, "--scale", "6", "--panel", "128", "--backend", "cpu"];
         let run = folder.run(&[&usual[..], arguments].concat()).ends(0);
         (run, pixels(&folder, name))
     };
@@ -69,9 +69,9 @@ fn maps_that_were_baked_before_are_shown() {
     without.says("without heights", &["give the height map as INPUT"]);
     assert!(without.stdout.is_empty());
     // Flat, normal mapped, 1 step and 4.
-    assert_eq!(narrow, 2 * 12 + 4 * 70 - 6);
+    assert_eq!(narrow, 2 * 12 + 4 * 134 - 6);
     let (_, (narrower, ..)) = show("no_parallax.png", &["--material", "dx/wall", "--convention", "dx"]);
-    assert_eq!(narrower, 2 * 12 + 2 * 70 - 6);
+    assert_eq!(narrower, 2 * 12 + 2 * 134 - 6);
 
     std::fs::copy(folder.path("wall_height.png"), folder.path("gl/wall_height.png")).unwrap();
     let (_, of_folder) = show("folder.png", &["--material", "gl"]);
@@ -93,7 +93,7 @@ fn a_parallax_map_is_read_in_its_own_encoding() {
     let show = |name: &str, format: &[&str], read: &[&str]| {
         folder.run(&[&bake[..], &["-o", name, "--parallax-bits", "16"], format].concat()).ends(0);
         let (material, picture) = (format!("{name}/wall"), format!("{name}.png"));
-        let usual = ["preview", "--material", &material, "-o", &picture, "--scale", "6", "--panel", "64", "-q"];
+        let usual = ["preview", "--material", &material, "-o", &picture, "--scale", "6", "--panel", "128", "-q"];
         folder.run(&[&usual[..], &["--backend", "cpu"], read].concat()).ends(0);
         pixels(&folder, &picture).2
     };
@@ -113,14 +113,14 @@ fn a_model_wears_the_material() {
     folder.file("square.obj", obj(true));
     folder.run(&["tangents", "square.obj", "-o", "square.glb"]).ends(0);
     let show = |model: &str| {
-        let arguments = ["wall_height.png", "--model", model, "-o", "shot.png", "--scale", "6", "--panel", "64"];
+        let arguments = ["wall_height.png", "--model", model, "-o", "shot.png", "--scale", "6", "--panel", "200"];
         let run = folder.run(&[&["preview"][..], &arguments].concat()).ends(0);
         assert!(run.stdout.is_empty());
         run.says("shot.png", &["pixels; cpu"]);
         pixels(&folder, "shot.png")
     };
     let (of_obj, of_glb) = (show("square.obj"), show("square.glb"));
-    assert_eq!(of_obj.0, 2 * 12 + 4 * (64 + 8) - 8);
+    assert_eq!(of_obj.0, 2 * 12 + 4 * (200 + 8) - 8);
     // The title has the file's name; the panels, of the same tangents, are the same.
     let panels = |(width, _, bytes): &(usize, usize, Vec<u8>)| bytes[3 * width * (12 + 28)..].to_vec();
     assert!(panels(&of_obj) == panels(&of_glb));
@@ -153,7 +153,12 @@ fn what_cannot_be_shown_is_an_error() {
         (&["wall_height.png", "-o", "x.png", "--elevations", "60,2"], 2, "from 5 to 90"),
         (&["wall_height.png", "-o", "x.png", "--light", "45"], 2, "two numbers of degrees"),
         (&["wall_height.png", "-o", "x.png", "--view", "45,90"], 2, "from -89 to 89"),
-        (&["wall_height.png", "-o", "x.png", "--panel", "9"], 2, "64..=1024"),
+        (&["wall_height.png", "-o", "x.png", "--panel", "64"], 2, "a whole number from 128 to 1024"),
+        (&["wall_height.png", "-o", "x.png", "--panel", "128", "--model", "bare.obj"], 2, "at least 200 for a model"),
+        (&["wall_height.png", "-o", "x.png", "--view", "1,2"], 2, "--model"),
+        (&["wall_height.png", "-o", "x.png", "--elevations", "-5"], 2, "from 5 to 90"),
+        (&["wall_height.png", "-o", "x.png", "--model", "bare.obj", "--across", "9"], 2, "--across"),
+        (&["--material", "two/a", "-o", "two/a_normal.png"], 2, "--output would overwrite two/a_normal.png"),
         (&["wall_height.png", "-o", "x.png", "--across", "0"], 2, "from 0.001"),
         (&["wall_height.png", "-o", "x.png", "--backend", "cpu", "--adapter", "x"], 2, "--adapter"),
         (&["wall_height.png", "-o", "x.png", "--encoding", "float", "--bits", "8"], 2, "--bits"),
@@ -163,4 +168,17 @@ fn what_cannot_be_shown_is_an_error() {
         run.ends(status);
     }
     assert!(!folder.files(".").contains(&"x.png".to_owned()));
+}
+
+/// --scale is in texels of the file: a map that is reduced to a quarter is as high as before.
+#[test]
+fn a_reduced_map_is_as_high() {
+    let folder = folder();
+    let show = |name: &str, scale: &[&str]| {
+        let usual = ["preview", "wall_height.png", "-o", name, "--shrink", "4", "--panel", "128", "--backend", "cpu"];
+        folder.run(&[&usual[..], scale].concat()).ends(0).stdout
+    };
+    let texels = show("texels.png", &["--scale", "8"]);
+    assert_eq!(texels, show("physical.png", &["--size", "48x32", "--depth", "8"]));
+    assert_ne!(texels, show("lower.png", &["--scale", "2"]));
 }

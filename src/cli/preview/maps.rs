@@ -1,6 +1,6 @@
 //! The material that is shown: of a height map, or of maps that were baked before.
 
-use super::PreviewArguments;
+use super::{PreviewArguments, check_overwrites_none};
 use crate::cli::exit::Failure;
 use crate::cli::print::say;
 use crate::cli::settings::{Settings, open_baker};
@@ -35,6 +35,7 @@ impl Shown {
     pub fn of(arguments: &PreviewArguments) -> Result<Self, Failure> {
         let settings = &arguments.settings;
         let baked = arguments.material.as_deref().map(Baked::find).transpose()?;
+        check_overwrites_none(&arguments.output, baked.iter().flat_map(Baked::files))?;
         let height_file = arguments.input.as_ref().or(baked.as_ref().and_then(|baked| baked.heights.as_ref()));
         let heights =
             height_file.map(|path| heard(path, HeightMap::read_with(path, &settings.input.read()), arguments));
@@ -42,6 +43,11 @@ impl Shown {
         let format = normal_format(settings)?;
         let parallax = Some(ParallaxFormat::default());
         let options = settings.slope.bake(Some(format), parallax)?;
+        // --scale is in texels of the file.
+        let options = BakeOptions { scale: options.scale.shrunk(settings.input.read().shrink)?, ..options };
+        if settings.slope.scale.is_none() && settings.slope.size.is_none() && !arguments.quiet {
+            say("the scale is 1, the default, which is nearly flat: most tiling textures take --scale 8 to 50");
+        }
         match (baked, heights) {
             (None, None) => {
                 Err(Failure::Usage("give a height map, or --material with the folder of a material".into()))
@@ -100,6 +106,11 @@ impl Baked {
             stem: normal.stem.clone(),
             normal: normal.path.clone(),
         })
+    }
+
+    /// What is read of it.
+    fn files(&self) -> impl Iterator<Item = &Path> {
+        [Some(&self.normal), self.parallax.as_ref(), self.heights.as_ref()].into_iter().flatten().map(PathBuf::as_path)
     }
 
     fn shown(

@@ -78,19 +78,22 @@ pub struct PreviewArguments {
 
     /// Steps through the parallax map, besides 1 and 4
     #[arg(long, value_name = "K", default_value_t = USUAL_ITERATIONS, value_parser = iterations, help_heading = PICTURE)]
+    #[arg(conflicts_with = "model")]
     pub iterations: NonZeroU32,
 
-    /// Degrees above the surface from which it is seen, from 5 to 90, one for each row
+    /// Degrees above the surface from which it is seen, from 5 to 90, one for each row, with commas [default: 60,25]
     #[arg(long, value_name = "DEGREES", value_delimiter = ',', value_parser = elevation, default_value = "60,25")]
-    #[arg(help_heading = PICTURE)]
+    #[arg(help_heading = PICTURE, hide_default_value = true, allow_negative_numbers = true, conflicts_with = "model")]
     pub elevations: Vec<f32>,
 
     /// Texels that a panel shows from left to right [default: ten times --scale, at most all]
     #[arg(long, value_name = "TEXELS", value_parser = above_zero, help_heading = PICTURE)]
+    #[arg(allow_negative_numbers = true, conflicts_with = "model")]
     pub across: Option<f32>,
 
     /// Error that is white, in texels [default: the longest offset that the relief can have, for each elevation]
     #[arg(long, value_name = "TEXELS", value_parser = above_zero, help_heading = PICTURE)]
+    #[arg(allow_negative_numbers = true, conflicts_with = "model")]
     pub error_max: Option<f32>,
 
     /// Where the light comes from: degrees counterclockwise from the right, and degrees above the surface
@@ -98,17 +101,17 @@ pub struct PreviewArguments {
     #[arg(help_heading = PICTURE)]
     pub light: Light,
 
-    /// Degrees by which the model is turned to the left, and above it
+    /// Degrees by which the model is turned to the left, from -360 to 360, and above it, from -89 to 89
     #[arg(long, value_name = "TURN,HEIGHT", value_parser = view, default_value = "30,25", allow_hyphen_values = true)]
-    #[arg(help_heading = PICTURE)]
+    #[arg(help_heading = PICTURE, requires = "model")]
     pub view: ModelView,
 
-    /// Width of a panel in pixels, from 64 to 1024 [default: 164; 340 for a model]
-    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(64..=1024), help_heading = PICTURE)]
+    /// Width of a panel in pixels, from 128 to 1024, and from 200 for a model [default: 164; 340 for a model]
+    #[arg(long, value_name = "PIXELS", value_parser = panel, help_heading = PICTURE)]
     pub panel: Option<u32>,
 
     /// At most N colours, from 2 to 256, for a file of a third of the bytes or less [default: all]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=256), help_heading = PICTURE)]
+    #[arg(long, value_name = "N", value_parser = colors, help_heading = PICTURE)]
     pub colors: Option<u16>,
 
     #[command(flatten)]
@@ -120,6 +123,8 @@ pub struct PreviewArguments {
 }
 
 const PICTURE: &str = "Picture";
+/// Pixels of a model's panel that the words above it need.
+const LEAST_OF_MODELS: u32 = 200;
 
 /// From where a model is seen, in degrees: around it, and above it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -193,12 +198,10 @@ impl PreviewArguments {
     /// Fails if the picture cannot be called so, before anything is read.
     fn check_output(&self) -> Result<(), Failure> {
         Picture::check_output(&self.output).map_err(|error| Failure::Usage(error.to_string()))?;
-        match [&self.input, &self.model].into_iter().flatten().find(|input| is_same_file(input, &self.output)) {
-            Some(input) => {
-                Err(Failure::Usage(format!("--output would overwrite {}: choose another name", input.display())))
-            }
-            None => Ok(()),
+        if self.model.is_some() && self.panel.is_some_and(|panel| panel < LEAST_OF_MODELS) {
+            return Err(Failure::Usage(format!("--panel must be at least {LEAST_OF_MODELS} for a model")));
         }
+        check_overwrites_none(&self.output, [&self.input, &self.model].into_iter().flatten().map(PathBuf::as_path))
     }
 
     fn sheet_options(&self, shown: &Shown) -> SheetOptions {
@@ -220,26 +223,44 @@ impl PreviewArguments {
             width: self.across.map(|texels| texels / material.size().width() as f32),
             white: self.error_max,
             panel: [panel, panel * height / width],
-            look: self.look(),
+            look: self.look(material),
         }
     }
 
     fn model_options(&self, path: &Path, shown: &Shown) -> ModelSheetOptions {
         let usual = ModelSheetOptions::default();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let is_possible = |paint: &Paint| shown.has_heights || !matches!(paint, Paint::Lit(ParallaxMethod::Limited));
+        // Without heights there may still be steps through the parallax map.
+        let possible = |paint| match paint {
+            Paint::Lit(ParallaxMethod::Limited) if !shown.has_heights => {
+                shown.has_parallax.then(|| Paint::Lit(ParallaxMethod::steps(self.iterations.get())))
+            }
+            paint => Some(paint),
+        };
         ModelSheetOptions {
             title: format!("{name} with {}, scale {}", shown.name, scale_of(&shown.material)),
-            paints: usual.paints.into_iter().filter(is_possible).collect(),
+            paints: usual.paints.into_iter().filter_map(possible).collect(),
             turn: self.view.turn,
             elevation: self.view.elevation,
             panel: self.panel.unwrap_or(usual.panel),
-            look: self.look(),
+            look: self.look(&shown.material),
         }
     }
 
-    fn look(&self) -> Look {
-        Look { light: self.light, ..Look::default() }
+    /// Depths are dark whichever way the codes go.
+    fn look(&self, material: &Material) -> Look {
+        let look = Look { light: self.light, ..Look::default() };
+        if material.scale()[0] < 0.0 { Look { low: look.high, high: look.low, ..look } } else { look }
+    }
+}
+
+/// Fails if the picture would replace one of the files that are read.
+fn check_overwrites_none<'a>(output: &Path, mut read: impl Iterator<Item = &'a Path>) -> Result<(), Failure> {
+    match read.find(|input| is_same_file(input, output)) {
+        Some(input) => {
+            Err(Failure::Usage(format!("--output would overwrite {}: choose another name", input.display())))
+        }
+        None => Ok(()),
     }
 }
 
@@ -261,6 +282,16 @@ fn lines(told: &[Told]) -> String {
     };
     let told = told.iter().filter(|told| !matches!(told.surface, Surface::Flat | Surface::Truth));
     told.map(line).collect::<Vec<_>>().join("\n")
+}
+
+fn panel(text: &str) -> Result<u32, String> {
+    let pixels = text.parse().ok().filter(|pixels| (128..=1024).contains(pixels));
+    pixels.ok_or_else(|| "it must be a whole number from 128 to 1024".into())
+}
+
+fn colors(text: &str) -> Result<u16, String> {
+    let colors = text.parse().ok().filter(|colors| (2..=256).contains(colors));
+    colors.ok_or_else(|| "it must be a whole number from 2 to 256".into())
 }
 
 fn elevation(text: &str) -> Result<f32, String> {
