@@ -1,17 +1,17 @@
 //! Whether what was baked is what was predicted.
 
-use super::decision::{degrees, pixels, short};
+use super::decision::{degrees, pixels};
 use super::parallax::{Sides, material};
 use super::prediction::{MapPrediction, NormalPrediction, Prediction};
 use super::scene::Facts;
 use super::subject::Reduced;
-use crate::error::{Error, Result};
-use crate::io::{NormalReadOptions, ReadOptions};
+use crate::error::Result;
+use crate::io::{NormalReadOptions, ParallaxReadOptions};
 use crate::map::{
-    Channels, CodeMap, Codes, CodesRef, Depth, Encoding, HeightMap, Heights, Maps, NormalFormat, NormalMap,
-    ParallaxFormat, ParallaxMap, Size,
+    Channels, Codes, CodesRef, Depth, HeightMap, Maps, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Size,
 };
 use crate::material::{ParallaxMethod, Texture};
+use crate::measure::digits;
 use crate::ops::Precision;
 use crate::stream::Monitor;
 use std::path::{Path, PathBuf};
@@ -33,7 +33,7 @@ impl Prediction {
     /// Measures the `maps` of the height map `input` again, against what the scene says of it.
     ///
     /// # Errors
-    /// What reading `input` reports; [`Error::Cancelled`]. A map that cannot be read is a broken prediction.
+    /// What reading `input` reports; [`crate::Error::Cancelled`]. A map that cannot be read is a broken prediction.
     pub fn check(&self, input: &Path, maps: &Maps<PathBuf>, monitor: &Monitor) -> Result<Checked> {
         let facts = self.material.facts()?;
         let (heights, _) = HeightMap::read_with(input, &facts.read)?;
@@ -82,7 +82,7 @@ impl Checking<'_> {
             [("degrees", normal.degrees, normal.tolerance), ("pixels", parallax.pixels, parallax.tolerance)];
         for (unit, predicted, tolerance) in predictions {
             if !(predicted <= tolerance) {
-                let [predicted, tolerance] = [predicted, tolerance].map(short);
+                let [predicted, tolerance] = [predicted, tolerance].map(digits);
                 let line = format!("{file}: {predicted} {unit} are predicted, and the scene allows {tolerance}");
                 self.broken.push(line);
             }
@@ -188,7 +188,7 @@ impl Checking<'_> {
             Precision::Fast => 3.0 * predicted,
         };
         let what = format!("{}: its values, from -1 to 1, are off by", path.display());
-        self.compare(&what, "at most", error, most, [error, predicted].map(short));
+        self.compare(&what, "at most", error, most, [error, predicted].map(digits));
         Ok(Some(baked))
     }
 
@@ -238,13 +238,13 @@ impl Checking<'_> {
             "{}: {extension} of {size}, {depth} bits{}, {} bytes; predicted {} of {} x {}, {} bits{}, {} bytes",
             path.display(),
             components(channels),
-            short(bytes as f64),
+            digits(bytes as f64),
             map.format,
             map.texels[0],
             map.texels[1],
             map.bits,
             components(map.channels),
-            short(map.bytes as f64),
+            digits(map.bytes as f64),
         );
         if is_same {
             self.measured.push(line)
@@ -284,20 +284,8 @@ fn stored_depth(codes: CodesRef<'_>, predicted: Depth) -> Depth {
 
 /// Reads a parallax map of this format, and tells how its codes are stored.
 fn read_parallax(path: &Path, format: ParallaxFormat) -> Result<(ParallaxMap, Depth)> {
-    let (map, _) = HeightMap::read_with(path, &ReadOptions::default())?;
-    // A signed file is read as v + 2^(b-1).
-    let is_signed = format.encoding == Encoding::Snorm;
-    let codes = match map.heights() {
-        Heights::U8(codes) => Codes::U8(codes.iter().map(|code| if is_signed { code ^ 0x80 } else { *code }).collect()),
-        Heights::U16(codes) => {
-            Codes::U16(codes.iter().map(|code| if is_signed { code ^ 0x8000 } else { *code }).collect())
-        }
-        Heights::F32(codes) => Codes::F32(codes.to_vec()),
-    };
-    let depth = stored_depth(codes.as_ref(), format.depth);
-    let stored = ParallaxFormat { depth: codes.as_ref().depth(), ..format };
-    let map = CodeMap::new(map.size(), stored, codes).map_err(|error| {
-        Error::file(path, format!("it holds no {} {} codes: {error}", format.encoding, format.depth), "bake it again")
-    })?;
+    let read = ParallaxReadOptions { encoding: Some(format.encoding), ..ParallaxReadOptions::default() };
+    let (map, _) = ParallaxMap::read_with(path, &read)?;
+    let depth = stored_depth(map.codes(), format.depth);
     Ok((map, depth))
 }

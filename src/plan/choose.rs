@@ -1,6 +1,6 @@
 //! The cheapest maps of one height map that keep within the tolerances.
 
-use super::decision::{Decision, Rejected, bytes_per_texel, short, sides};
+use super::decision::{Decision, Rejected, bytes_per_texel, sides};
 use super::normals::{self, NormalChoice};
 use super::parallax::{self, ParallaxChoice};
 use super::prediction::TangentSpace;
@@ -8,6 +8,7 @@ use super::subject::{Reduced, Subject};
 use super::unmet::Unmet;
 use super::{frames, precision};
 use crate::error::{Error, Result};
+use crate::measure::digits;
 use crate::ops::Precision;
 
 /// What was chosen for a height map.
@@ -142,7 +143,7 @@ fn maps_decision(
     });
     let mut reason = format!("{}; in all {} of the height map", reasons.join(", "), bytes_per_texel(bytes));
     if let Some(bound) = subject.tolerance().bytes_per_texel {
-        reason += &format!(", of {} allowed", short(bound));
+        reason += &format!(", of {} allowed", digits(bound));
     }
     Decision::new("maps", maps, reason)
 }

@@ -1,6 +1,6 @@
 //! Tangents at the vertices, or a cotangent frame at each pixel.
 
-use super::decision::{Decision, Rejected, degrees, short};
+use super::decision::{Decision, Rejected, degrees};
 use super::prediction::TangentSpace;
 use super::subject::Subject;
 use crate::baker::Baker;
@@ -9,7 +9,7 @@ use crate::inspect::angle;
 use crate::io::Model;
 use crate::map::{Convention, NormalMap};
 use crate::material::Texture;
-use crate::measure::{Errors, median_time};
+use crate::measure::{Errors, digits, median_time};
 use crate::mesh::Mesh;
 use crate::ops::tangents::{TangentOptions, Tangents};
 use crate::shading::{cotangent_frame, perturbed_normal, pixel_frame};
@@ -50,13 +50,13 @@ pub(super) fn choose(
     let errors = Errors::of(pixels.iter().map(|pixel| pixel.difference(&texture)).collect());
     let nanoseconds = |shade: fn(&Pixel, &Texture<3>) -> [f32; 3]| {
         let time = median_time(5, || pixels.iter().for_each(|pixel| _ = black_box(shade(black_box(pixel), &texture))));
-        short(time.as_secs_f64() * 1e9 / pixels.len() as f64)
+        digits(time.as_secs_f64() * 1e9 / pixels.len() as f64)
     };
     let measured = format!(
         "normals of {} differ by {} at most, {} in the mean, in {} pixels",
         model.display(),
         degrees(errors.largest),
-        short(errors.mean),
+        digits(errors.mean),
         pixels.len(),
     );
     let times = format!(
@@ -71,7 +71,7 @@ pub(super) fn choose(
             TangentSpace::CotangentFrame,
             format!(
                 "no tangents, {BYTES_PER_VERTEX} bytes per vertex less: {measured}, of {} that the map leaves",
-                short(left)
+                digits(left)
             ),
         ),
         false => {

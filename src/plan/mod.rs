@@ -24,12 +24,11 @@
 mod check;
 mod choose;
 mod decision;
+mod file_plan;
 mod frames;
 mod method;
 mod normals;
 mod parallax;
-#[expect(clippy::module_inception, reason = "the plan itself, beside what it is made of")]
-mod plan;
 mod precision;
 mod prediction;
 mod scene;
@@ -42,10 +41,10 @@ mod visible;
 
 pub use check::Checked;
 pub use decision::{Decision, Rejected};
-pub use plan::{FilePlan, Plan};
+pub use file_plan::{FilePlan, Plan};
 pub use prediction::{
     ErrorOf, MapPrediction, MaterialFacts, NormalPrediction, ParallaxPrediction, Prediction, TangentSpace, predictions,
 };
 pub use scene::{Scene, Tolerance};
 pub use settings::check_place;
-pub use view::{Seen, Sight, View};
+pub use view::{Seen, Sight, Viewpoint};

@@ -1,6 +1,6 @@
 //! Which normal map.
 
-use super::decision::{Decision, Rejected, bytes_per_texel, degrees, short};
+use super::decision::{Decision, Rejected, bytes_per_texel, degrees};
 use super::subject::{Reduced, Subject};
 use super::unmet::Unmet;
 use crate::baker::Baker;
@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::io::check_normal_format;
 use crate::map::{Channels, Convention, Depth, Encoding, NormalFormat, NormalMap};
 use crate::material::Texture;
-use crate::measure::Errors;
+use crate::measure::{Errors, digits};
 use crate::ops::Precision;
 use crate::ops::bake::BakeOptions;
 use std::path::Path;
@@ -45,7 +45,7 @@ pub(super) fn choose(subject: &Subject<'_>, reduced: &Reduced<'_>) -> Result<Res
     let tolerance = subject.tolerance().normal;
     let flat = reduced.visible.leanings().largest;
     if flat <= tolerance {
-        let reason = format!("no normal leans by more than {}, of {} allowed", degrees(flat), short(tolerance));
+        let reason = format!("no normal leans by more than {}, of {} allowed", degrees(flat), digits(tolerance));
         let decision = Decision::new("normal map", "none", reason);
         return Ok(Ok(NormalChoice { format: None, error: flat, bytes: 0.0, decision }));
     }
@@ -62,9 +62,9 @@ pub(super) fn choose(subject: &Subject<'_>, reduced: &Reduced<'_>) -> Result<Res
             let reason = format!(
                 "off by {} at most, of {} allowed; by {} in 99 of 100 texels, {} in the mean{in_file}",
                 degrees(largest),
-                short(tolerance),
-                short(percentile_99),
-                short(mean),
+                digits(tolerance),
+                digits(percentile_99),
+                digits(mean),
             );
             let decision = Decision::new("normal map", describe(format), reason).without(rejected);
             let bytes = format.texel().bytes() as f64 * reduced.share();

@@ -1,12 +1,12 @@
 //! Whether a bake is exact or fast.
 
-use super::decision::{Decision, Rejected, degrees, pixels, short};
+use super::decision::{Decision, Rejected, degrees, pixels};
 use super::normals::{self, NormalChoice};
 use super::parallax::{self, MapChoice, ParallaxChoice, Sides};
 use super::scene::Tolerance;
 use super::subject::{Reduced, Subject};
 use crate::error::Result;
-use crate::measure::timed;
+use crate::measure::{digits, timed};
 use crate::ops::Precision;
 use crate::ops::bake::BakeOptions;
 
@@ -66,10 +66,10 @@ fn decide(
     tolerance: Tolerance,
     measure: impl FnOnce() -> Result<Measured>,
 ) -> Result<(Option<Measured>, Decision)> {
-    let times = format!("{} ms, fast {} ms, on {device}", short(exact), short(fast));
+    let times = format!("{} ms, fast {} ms, on {device}", digits(exact), digits(fast));
     let (least, share) = LEAST_SAVING;
     if exact - fast < least || exact - fast < share * exact {
-        let why = format!("it saves less than {} ms or {} %", short(least), short(100.0 * share));
+        let why = format!("it saves less than {} ms or {} %", digits(least), digits(100.0 * share));
         let rejected = vec![Rejected::new(Precision::Fast, why)];
         let decision = Decision::new(TOPIC, Precision::Exact, "the same bytes on every device");
         return Ok((None, decision.taking(times).without(rejected)));
@@ -82,7 +82,7 @@ fn decide(
         let decision = Decision::new(TOPIC, Precision::Exact, "fast is not right enough");
         return Ok((None, decision.taking(times).without(rejected)));
     }
-    let rejected = vec![Rejected::new(Precision::Exact, format!("it takes {} ms more", short(exact - fast)))];
+    let rejected = vec![Rejected::new(Precision::Exact, format!("it takes {} ms more", digits(exact - fast)))];
     let reason = format!("{errors}, within the tolerances");
     Ok((Some(measured), Decision::new(TOPIC, Precision::Fast, reason).taking(times).without(rejected)))
 }

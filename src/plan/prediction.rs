@@ -1,6 +1,6 @@
 //! What a plan says of a height map's maps, for a later check.
 
-use super::plan::slashed;
+use super::file_plan::slashed;
 use super::scene::Facts;
 use super::text::{Text, document, named, named_option};
 use super::view::Seen;

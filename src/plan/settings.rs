@@ -1,7 +1,7 @@
 //! The settings file of a plan.
 
 use super::decision::{Decision, wrapped};
-use super::plan::{FilePlan, Plan, slashed};
+use super::file_plan::{FilePlan, Plan, slashed};
 use super::prediction::Prediction;
 use crate::error::{Error, Result, plain};
 use crate::io::replace::Replacement;
@@ -102,7 +102,8 @@ impl FilePlan {
         for Decision { topic, choice, reason, .. } in &self.decisions {
             text += &wrapped(&format!("{topic}: {}; {}", plain(choice), plain(reason)), ["# ", "#   "]);
         }
-        text += &format!("[[override]]\nglob = {}\n", quoted(&globset::escape(&slashed(&self.file))));
+        text +=
+            &format!("[[override]]\nglob = {}\n", quoted(&globset::escape(&slashed(&self.file).replace('\\', "\\\\"))));
         for (key, value) in &self.settings {
             text += &format!("{key} = {}\n", if is_number(value) { value.clone() } else { quoted(value) });
         }

@@ -1,8 +1,8 @@
 //! Tolerances that cannot be met.
 
-use super::decision::short;
 use super::prediction::ErrorOf;
 use crate::error::Error;
+use crate::measure::digits;
 use std::path::{Path, PathBuf};
 
 /// A tolerance that no candidate keeps within, and the best that can be had.
@@ -75,7 +75,7 @@ impl Unmet {
     /// Why a resolution is not fit.
     pub fn why(&self) -> String {
         let Self { wanted, unit, best, with, .. } = self;
-        format!("the best is {} {unit}, of {} allowed, with {with}", short(*best), short(*wanted))
+        format!("the best is {} {unit}, of {} allowed, with {with}", digits(*best), digits(*wanted))
     }
 
     /// Of all height maps that cannot be planned.
@@ -96,7 +96,7 @@ impl Unmet {
         format!(
             "{}: the tolerance {tolerance} of {} {unit} cannot be met: the best is {} {unit}, with {with}",
             map.display(),
-            short(*wanted),
+            digits(*wanted),
             short_above(*best),
         )
     }
@@ -107,11 +107,12 @@ impl Unmet {
     }
 }
 
-/// A number of three digits at or above this one, so that what it allows is enough.
+/// A number of as many digits as are written, at or above this one, so that what it allows is enough.
 fn short_above(number: f64) -> String {
     if number <= 0.0 {
         return "0".into();
     }
-    let digit = 10f64.powi(number.log10().floor() as i32 - 2);
-    short((number / digit).ceil() * digit)
+    let written = if number < 1e-4 { 2 } else { 3 };
+    let digit = 10f64.powi(number.log10().floor() as i32 + 1 - written);
+    digits((number / digit).ceil() * digit)
 }

@@ -8,7 +8,7 @@ use toml::Spanned;
 
 /// From where a material is seen at its nearest, and at its shallowest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct View {
+pub struct Viewpoint {
     /// The nearest view.
     pub sight: Sight,
     /// The shallowest angle in degrees between the surface and the ray to the eye; 90 is straight from above.
@@ -43,7 +43,7 @@ pub struct Seen {
     pub angle: f64,
 }
 
-impl View {
+impl Viewpoint {
     /// What is seen of a map of `size` that covers `extent`.
     pub fn of(&self, size: Size, extent: Option<[Rational; 2]>) -> Seen {
         let length =
@@ -106,7 +106,7 @@ impl ViewText {
         }
     }
 
-    pub fn resolve(&self) -> Result<View, Wrong> {
+    pub fn resolve(&self) -> Result<Viewpoint, Wrong> {
         let angle = within("angle", &self.angle, "a number of degrees from 1 to 90", 1.0..=90.0)?;
         let angle = angle.ok_or_else(|| missing("angle", "write the shallowest angle in degrees, as angle = 20"))?;
         let resolution = self.resolution.as_ref().map(|resolution| match *resolution.get_ref() {
@@ -139,7 +139,7 @@ impl ViewText {
                 return Err(missing("distance", remedy));
             }
         };
-        Ok(View { sight, angle, resolution })
+        Ok(Viewpoint { sight, angle, resolution })
     }
 }
 

@@ -127,8 +127,7 @@ fn tolerances_that_cannot_be_met_are_named_with_the_best_that_can() {
         rest.split(',').next().unwrap().parse().unwrap()
     }
     let error = plan_error(&folder, &scene("normal = 0.000001\nparallax = 9", "scale = 2"));
-    for part in ["wave_h.png: the tolerance normal of 0.000001 degrees cannot be met: the best is ", " with ", " 16 xy"]
-    {
+    for part in ["wave_h.png: the tolerance normal of 1e-6 degrees cannot be met: the best is ", " with ", " 16 xy"] {
         assert!(error.contains(part), "{part:?} is not in {error}");
     }
     // What it says can be had can be had, and what is a little less cannot.
@@ -163,14 +162,15 @@ fn of_all_resolutions_the_nearest_to_the_tolerance_is_told() {
         scene(&format!("normal = 0.4\nparallax = 9\n{bounds}"), material)
     };
     let free = plan_of_one(&folder, &file(""));
-    assert_eq!(setting(&free, "shrink"), Some("2"));
-    // Half of the texels of each axis, two bytes each.
-    let error = plan_error(&folder, &file("bytes-per-texel = 0.3"));
-    for part in ["the tolerance bytes-per-texel of 0.3 bytes per texel cannot", "the best is 0.5 bytes", "at shrink 2"]
+    assert_eq!(setting(&free, "shrink"), Some("4"));
+    // A quarter of the texels of each axis, two bytes each.
+    let error = plan_error(&folder, &file("bytes-per-texel = 0.1"));
+    for part in
+        ["the tolerance bytes-per-texel of 0.1 bytes per texel cannot", "the best is 0.125 bytes", "at shrink 4"]
     {
         assert!(error.contains(part), "{part:?} is not in {error}");
     }
-    plan_of_one(&folder, &file("bytes-per-texel = 0.5"));
+    plan_of_one(&folder, &file("bytes-per-texel = 0.125"));
 }
 
 #[test]

@@ -96,6 +96,7 @@ fn help_has_every_key_and_its_scene_is_one() {
     let (_, rest) = help.split_once("\n  folder = ").unwrap();
     let (example, _) = rest.split_once("\nWhat is chosen").unwrap();
     folder.file("textures/walls/a_height.png", "");
+    folder.file("wall.glb", "");
     folder.file("help.toml", format!("  folder = {example}"));
     let run = folder.run(&["plan", "help.toml", "-o", "t.toml"]).ends(1);
     run.says("error: help.toml:", &["no height map in textures matches cloth/*, dem_*"]);

@@ -7,7 +7,7 @@ mod words;
 pub(super) use search::choose;
 pub(super) use sides::Sides;
 
-use super::decision::{Decision, bytes_per_texel, short};
+use super::decision::{Decision, bytes_per_texel};
 use super::subject::Reduced;
 use crate::baker::Baker;
 use crate::error::Result;

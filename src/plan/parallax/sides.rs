@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::map::HeightMap;
 use crate::material::{Material, ParallaxMethod, Texture};
-use crate::measure::{Errors, View, Views, median_time};
+use crate::measure::{Errors, View, Views, digits, median_time};
 use crate::ops::bake::BakeOptions;
 use crate::plan::prediction::ErrorOf;
 use crate::plan::view::Seen;
@@ -85,7 +85,7 @@ impl Sides {
 
     /// Where it is looked at from: `8192 pixels at each of 20, 37.5, 55 and 72.5 degrees`.
     pub fn words(&self) -> String {
-        let angles: Vec<String> = elevations(self.seen.angle).into_iter().map(super::short).collect();
+        let angles: Vec<String> = elevations(self.seen.angle).into_iter().map(digits).collect();
         match &angles[..] {
             [first @ .., last] if !first.is_empty() => {
                 format!("{PIXELS} pixels at each of {} and {last} degrees", first.join(", "))

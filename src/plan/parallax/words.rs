@@ -3,7 +3,8 @@
 use super::search::{Search, Tried};
 use super::{MapChoice, ParallaxChoice, describe};
 use crate::material::ParallaxMethod;
-use crate::plan::decision::{Decision, Rejected, bytes_per_texel, counted, pixels, short};
+use crate::measure::digits;
+use crate::plan::decision::{Decision, Rejected, bytes_per_texel, counted, pixels};
 use crate::plan::method::reads;
 
 impl Search<'_> {
@@ -22,7 +23,7 @@ impl Search<'_> {
     fn reason(&self, tried: &Tried) -> String {
         let tolerance = self.subject.tolerance();
         let (error, words, allowed) =
-            (pixels(self.error(tried)), tolerance.parallax_of.words(), short(tolerance.parallax));
+            (pixels(self.error(tried)), tolerance.parallax_of.words(), digits(tolerance.parallax));
         let sides = self.sides.words();
         match tried.method {
             ParallaxMethod::None => format!("offsets are {error} {words}, of {allowed} allowed, in {sides}"),
@@ -36,7 +37,7 @@ impl Search<'_> {
 
     fn times(&self, tried: &Tried) -> Option<String> {
         let (takes, bound) = tried.milliseconds.zip(self.subject.tolerance().milliseconds)?;
-        let (takes, bound) = (short(takes), short(bound));
+        let (takes, bound) = (digits(takes), digits(bound));
         Some(format!("a screen full of it takes {takes} ms on all threads of this CPU, of {bound} allowed"))
     }
 
@@ -51,8 +52,8 @@ impl Search<'_> {
             "with it offsets are off by {} {}, of {} allowed; its values, from -1 to 1, by {}",
             pixels(self.error(tried)),
             tolerance.parallax_of.words(),
-            short(tolerance.parallax),
-            short(error),
+            digits(tolerance.parallax),
+            digits(error),
         );
         Decision::new("parallax map", describe(format), reason).without(coarser)
     }
@@ -76,10 +77,10 @@ impl Search<'_> {
             [] => return None,
         };
         let at = if tried.len() > 1 { format!(", with {}", best.method) } else { String::new() };
-        let time = best.milliseconds.map(|ms| format!(", {} ms", short(ms))).unwrap_or_default();
+        let time = best.milliseconds.map(|ms| format!(", {} ms", digits(ms))).unwrap_or_default();
         let left = self.bytes_left();
         let bytes = match best.bytes > left {
-            true => format!("; it reads {}, of {} left", bytes_per_texel(best.bytes), short(left)),
+            true => format!("; it reads {}, of {} left", bytes_per_texel(best.bytes), digits(left)),
             false => String::new(),
         };
         Some(Rejected::new(what, format!("off by up to {}{at}{time}{bytes}", pixels(self.error(best)))))

@@ -3,7 +3,7 @@
 mod reader;
 
 use super::prediction::ErrorOf;
-use super::view::View;
+use super::view::Viewpoint;
 use crate::batch::{FileGlob, Found, Search};
 use crate::error::{Error, Result};
 use crate::exact::{Rational, Scale};
@@ -31,7 +31,7 @@ pub(super) struct SceneMaterial {
     /// Where it begins in the file.
     line: usize,
     pub facts: Facts,
-    pub view: View,
+    pub view: Viewpoint,
     pub tolerance: Tolerance,
     /// Width and height that the map covers, in the unit of the view's distance.
     pub extent: Option<[Rational; 2]>,

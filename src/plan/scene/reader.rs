@@ -9,7 +9,7 @@ use crate::map::{Convention, Edges};
 use crate::ops::bake::Filter;
 use crate::plan::prediction::ErrorOf;
 use crate::plan::text::{Text, document, line};
-use crate::plan::view::{Sight, View, ViewText};
+use crate::plan::view::{Sight, ViewText, Viewpoint};
 use serde::de::{self, Deserialize, Deserializer, SeqAccess, Visitor};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -190,7 +190,7 @@ impl Reader<'_> {
         Ok(SceneMaterial { globs, line: self.line(start), facts, view, tolerance, extent, format, model })
     }
 
-    fn view(&self, view: &ViewText, extent: Option<[Rational; 2]>, start: usize) -> Result<View> {
+    fn view(&self, view: &ViewText, extent: Option<[Rational; 2]>, start: usize) -> Result<Viewpoint> {
         let view = view.resolve().map_err(|wrong| {
             self.error(wrong.at.unwrap_or(start), format!("in the view {}", wrong.reason), wrong.remedy)
         })?;
