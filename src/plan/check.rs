@@ -81,7 +81,8 @@ impl Checking<'_> {
         let predictions =
             [("degrees", normal.degrees, normal.tolerance), ("pixels", parallax.pixels, parallax.tolerance)];
         for (unit, predicted, tolerance) in predictions {
-            if !(predicted <= tolerance) {
+            let is_within = predicted <= tolerance;
+            if !is_within {
                 let [predicted, tolerance] = [predicted, tolerance].map(digits);
                 let line = format!("{file}: {predicted} {unit} are predicted, and the scene allows {tolerance}");
                 self.broken.push(line);

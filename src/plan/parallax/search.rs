@@ -76,8 +76,8 @@ impl<'a> Search<'a> {
             methods.extend([1.0, 3.0].map(|limit| ParallaxMethod::Plane { limit }));
         }
         methods.extend((1..=MOST_STEPS).map(ParallaxMethod::steps));
-        // What is right takes twice as many steps as the last one.
-        let most = steps(&self.finest, self.subject.seen.angle)?;
+        // From there to steps of a sixteenth of a texel.
+        let most = 4 * steps(&self.finest, self.subject.seen.angle)?;
         let halvings = (2..).map(|power| 1u32 << power).take_while(|steps| *steps < most);
         let relief = |steps| ParallaxMethod::Relief { steps, bisections: BISECTIONS };
         methods.extend(halvings.chain([most]).map(relief));

@@ -103,8 +103,7 @@ fn elevations(shallowest: f64) -> Vec<f64> {
     elevations
 }
 
-/// Steps of [`Material::truth`] at an elevation, along the axis that takes more of them. At a silhouette one step more or
-/// less would make another offset of it, so that all pixels take as many.
+/// The steps of a quarter of a texel at an elevation, along the axis that takes more of them.
 pub(super) fn steps(material: &Material, elevation: f64) -> Result<u32> {
     let (z, across) = libm::sincos(elevation.to_radians());
     let (z, across) = (z as f32, across as f32);
