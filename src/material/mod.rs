@@ -175,8 +175,8 @@ impl Material {
         }
         let scale = self.scale[0].abs().max(self.scale[1].abs());
         let elevation = (z.atan2(x.hypot(y)).to_degrees() * 1e3).round() / 1e3;
-        let range = format!("at most {} to be seen from {elevation} degrees", (scale * MOST / texels).floor());
-        Err(Error::parameter("scale in texels", scale, range))
+        let range = format!("at most {} texels to be seen from {elevation} degrees", (scale * MOST / texels).floor());
+        Err(Error::parameter("scale", scale, range))
     }
 
     /// Texels of the height map along each axis.

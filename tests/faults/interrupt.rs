@@ -146,7 +146,7 @@ fn an_interrupted_picture_leaves_nothing() {
     let folder = Folder::new();
     folder.grey8("height.png", 64, 64, |x, y| (x * y) as u8);
     // Relief so high that a ray takes sixty thousand steps.
-    let high = ["--scale", "60000", "--elevations", "5", "--panel", "128", "--backend", "cpu"];
+    let high = ["--scale", "700", "--elevations", "5", "--panel", "128", "--backend", "cpu"];
     let command = folder.command(&[&["preview", "height.png", "-o", "out/sheet.png"][..], &high].concat());
     let run = Run::from(signalled(command, "-INT", listens)).ends(130);
     assert!(run.stderr.contains("interrupted: "), "{}", run.stderr);

@@ -94,7 +94,7 @@ fn a_ray_that_cannot_be_followed_is_refused() {
     let heights = HeightMap::from(Grid::new(1, 1, vec![0u8]).unwrap());
     let material = material(&heights, [1000, 1000], Edge::Wrap);
     let error = material.intersection([0.0; 2], [1.0, 0.0, 0.01]).unwrap_err().to_string();
-    assert!(error.starts_with("scale in texels is 1000: it must be at most 16"), "{error}");
+    assert!(error.starts_with("scale is 1000: it must be at most 16"), "{error}");
 }
 
 /// Heights between the centres of texels, in f64.

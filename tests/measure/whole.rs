@@ -109,5 +109,5 @@ fn options_out_of_range_are_refused() {
     }
     // A ray at 1 degree crosses cot 1 = 57.29 texels for each texel of the scale: 16 384 of 285.99.
     let high = refused(MeasureOptions { elevation: 1.0, ..clamped("286") });
-    assert!(high.starts_with("scale in texels is 286: it must be at most 285 to be seen from 1"), "{high}");
+    assert!(high.starts_with("scale is 286: it must be at most 285 texels to be seen from 1"), "{high}");
 }
