@@ -36,7 +36,7 @@ mod tiff;
 
 pub use channel::Channel;
 pub use format::{INPUT_EXTENSIONS, default_format, default_parallax_format};
-pub use gltf::{LeftOut, Model, ModelFile, ModelFiles, ModelReadOptions, ModelReport, Primitive};
+pub use gltf::{LeftOut, Model, ModelFile, ModelFiles, ModelReadOptions, ModelReport, Placement, Primitive};
 pub use parallax::ParallaxReadOptions;
 pub use raw::{RawKind, RawLayout};
 

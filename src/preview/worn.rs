@@ -3,12 +3,13 @@
 use super::look::Look;
 use super::raster::{Canvas, Corner, Viewpoint};
 use crate::error::{Error, Result};
+use crate::io::Placement;
 use crate::material::{Material, ParallaxMethod};
 use crate::mesh::Mesh;
 use crate::ops::tangents::Tangents;
 use crate::shading::{Frame, green_turned, pixel_frame, to_object, to_tangent};
 use crate::split_mix::SplitMix;
-use crate::vector::{add, normalized, sub, times};
+use crate::vector::{add, cross, dot, normalized, sub, times};
 
 /// A mesh with normals and tangents of glTF's convention: the bitangent w (n x t) points against growing v, as green does.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,6 +76,33 @@ impl Worn {
         Ok(Self { vertices, triangles: mesh.triangles().to_vec() })
     }
 
+    /// The mesh where a node of a scene puts it: normals by the inverse transpose, tangents as its edges; handedness and
+    /// triangles turn over in a mirror.
+    pub fn placed(&self, placement: &Placement) -> Self {
+        let [x, y, z, origin] = *placement;
+        let moved = |[a, b, c]: [f32; 3]| add(add(times(a, x), times(b, y)), times(c, z));
+        let side = if dot(cross(x, y), z) < 0.0 { -1.0 } else { 1.0 };
+        let [across_x, across_y, across_z] = [cross(y, z), cross(z, x), cross(x, y)].map(|axis| times(side, axis));
+        let turned = |[a, b, c]: [f32; 3]| add(add(times(a, across_x), times(b, across_y)), times(c, across_z));
+        let vertex = |vertex: &Corner<9>| {
+            let [nx, ny, nz, tx, ty, tz, w, u, v] = vertex.attributes;
+            let [nx, ny, nz] = normalized(turned([nx, ny, nz]));
+            let [tx, ty, tz] = normalized(moved([tx, ty, tz]));
+            let attributes = [nx, ny, nz, tx, ty, tz, side * w, u, v];
+            Corner { position: add(moved(vertex.position), origin), attributes }
+        };
+        let triangle = |[a, b, c]: &[u32; 3]| if side < 0.0 { [*a, *c, *b] } else { [*a, *b, *c] };
+        Self {
+            vertices: self.vertices.iter().map(vertex).collect(),
+            triangles: self.triangles.iter().map(triangle).collect(),
+        }
+    }
+
+    /// Bytes that it takes in memory.
+    pub fn bytes(&self) -> u64 {
+        (size_of_val(&self.vertices[..]) + size_of_val(&self.triangles[..])) as u64
+    }
+
     /// Where its vertices are.
     pub fn positions(&self) -> impl Iterator<Item = [f32; 3]> {
         self.vertices.iter().map(|vertex| vertex.position)
@@ -108,7 +136,7 @@ impl Worn {
         let mut is_drawn = || self.vertices.len() <= DRAWN || random.bits() as usize % self.vertices.len() < DRAWN;
         for vertex in self.vertices.iter().filter(|_| is_drawn()) {
             let from_eye = sub(vertex.position, viewpoint.eye);
-            let distance = crate::vector::dot(viewpoint.axes[2], from_eye);
+            let distance = dot(viewpoint.axes[2], from_eye);
             let Pixel { frame: [t, b, n], .. } = Pixel::of(vertex.attributes, [0.0; 3]);
             for (axis, colour) in [(t, RED), (b, GREEN), (n, BLUE)] {
                 let end = add(vertex.position, times(2.0 * LINE * viewpoint.field * distance, axis));

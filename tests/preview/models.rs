@@ -160,3 +160,24 @@ fn a_model_sheet_has_a_panel_for_each_paint() {
         assert_eq!(drawn.unwrap_err().to_string(), expected);
     }
 }
+
+/// A mesh is worn by what moves it as by the mesh that was moved before: turned and scaled, and in a mirror, where its
+/// handedness and its triangles turn over. All numbers are exact.
+#[test]
+fn what_moves_a_mesh_moves_its_tangent_space() {
+    let moved = |to: fn([f32; 3]) -> [f32; 3], normal: [f32; 3], is_mirror: bool| {
+        let square = square();
+        let positions = square.positions().iter().map(|position| to(*position)).collect();
+        let turned = |[a, b, c]: &[u32; 3]| if is_mirror { [*a, *c, *b] } else { [*a, *b, *c] };
+        let triangles = square.triangles().iter().map(turned).collect();
+        let mesh = Mesh::new(positions, square.texcoords().to_vec(), triangles).unwrap();
+        worn(&mesh.with_normals(vec![normal; 4]).unwrap())
+    };
+    let turn = [[0.0, 0.0, -2.0], [0.0, 2.0, 0.0], [2.0, 0.0, 0.0], [5.0, 6.0, 7.0]];
+    let turned = moved(|[x, y, z]| [2.0 * z + 5.0, 2.0 * y + 6.0, -2.0 * x + 7.0], [1.0, 0.0, 0.0], false);
+    assert_eq!(worn(&square()).placed(&turn), turned);
+    let mirror = [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3]];
+    let mirrored = moved(|[x, y, z]| [-x, y, z], [0.0, 0.0, 1.0], true);
+    assert_eq!(worn(&square()).placed(&mirror), mirrored);
+    assert_ne!(mirrored, worn(&square()));
+}

@@ -43,8 +43,9 @@ normal map is read, --parallax-encoding how the parallax map is.
 --model shows meshes that wear the material: normal mapped, with parallax,
 with their tangents, bitangents and normals as lines, and with the handedness
 as colours. Tangents are those of the file, else mikktspace's; both must be
-glTF's, for green up. Every mesh stands as it is stored: nodes do not move it.
-Models are rendered on the CPU; sheets on a GPU if there is a real one.
+glTF's, for green up. Meshes stand where the nodes of the first scene put them;
+skins move nothing. Models are rendered on the CPU; sheets on a GPU if there is
+a real one.
 
 Examples:
   texbake preview height.png -o sheet.png --scale 24

@@ -29,10 +29,17 @@ pub fn meshes(path: &Path, arguments: &PreviewArguments) -> Result<Vec<Worn>, Fa
     let baker = open_baker(&arguments.settings.device.place()?)?;
     let worn = |primitive| {
         let mesh = model.mesh(primitive)?;
-        match model.tangents(primitive)?.filter(|_| mesh.normals().is_some()) {
-            Some(tangents) => Worn::with_tangents(&mesh, &tangents),
-            None => Worn::of_tangents(&mesh, &baker.tangents(&mesh, &TangentOptions::default())?),
-        }
+        let worn = match model.tangents(primitive)?.filter(|_| mesh.normals().is_some()) {
+            Some(tangents) => Worn::with_tangents(&mesh, &tangents)?,
+            None => Worn::of_tangents(&mesh, &baker.tangents(&mesh, &TangentOptions::default())?)?,
+        };
+        Ok((model.placements(primitive)?, worn))
     };
-    Ok((0..model.primitives().len()).map(worn).collect::<texbake::Result<_>>()?)
+    let meshes: Vec<_> = (0..model.primitives().len()).map(worn).collect::<texbake::Result<_>>()?;
+    let copied = meshes.iter().map(|(places, worn)| places.len() as u64 * worn.bytes()).sum::<u64>();
+    if copied > max_bytes {
+        let reason = format!("its meshes take {copied} bytes with all copies, above the limit of {max_bytes}");
+        return Err(Failure::Failed(format!("{}: {reason}; raise it with --max-bytes", path.display())));
+    }
+    Ok(meshes.iter().flat_map(|(places, worn)| places.iter().map(|place| worn.placed(place))).collect())
 }

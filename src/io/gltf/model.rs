@@ -6,6 +6,7 @@ mod replaced;
 use super::document::{Document, ModelFile};
 use super::edit::{Edited, Made};
 use super::elements::Elements;
+use super::scene::{Placement, placements};
 use super::select::{Geometry, Place, Selection, doubts, has_tangents, name, named, primitive_doubts};
 use super::write::ModelFormat;
 use super::{container, write};
@@ -195,6 +196,18 @@ impl Model {
         let read =
             |place| geometry.tangents(&self.document, place).map_err(|error| named(&self.document, place, error));
         place.map(read).transpose()
+    }
+
+    /// Where the nodes of the file's scene put a primitive, and those that are the same: at least one place.
+    ///
+    /// # Errors
+    /// [`Error::File`] for nodes that are damaged; [`Error::Parameter`] if there is no such primitive.
+    pub fn placements(&self, primitive: usize) -> Result<Vec<Placement>> {
+        let (_, places) = self.geometry(primitive)?;
+        let mut meshes: Vec<usize> = places.iter().map(|(mesh, _)| *mesh).collect();
+        meshes.dedup();
+        let placed: Result<Vec<_>> = meshes.into_iter().map(|mesh| placements(&self.document, mesh)).collect();
+        Ok(placed?.concat())
     }
 
     /// Gives a primitive, and those that are the same, the tangents that its mesh has got; they are put into the file

@@ -2,6 +2,7 @@
 
 pub mod builder;
 mod damage;
+mod placements;
 mod read;
 mod refused;
 pub mod samples;
