@@ -166,6 +166,21 @@ impl Material {
         Ok(ParallaxMethod::Relief { steps: (4.0 * texels).max(16.0).ceil() as u32, bisections: 16 })
     }
 
+    /// The truth for eyes at so many degrees above the surface, on whichever side: along the axis that takes more steps.
+    ///
+    /// # Errors
+    /// As [`Material::truth`].
+    pub fn truth_at(&self, elevation: f64) -> Result<ParallaxMethod> {
+        let (z, across) = libm::sincos(elevation.to_radians());
+        let along = |axis: usize| {
+            let mut eye = [0.0, 0.0, z as f32];
+            eye[axis] = across as f32;
+            self.truth(eye)
+        };
+        let (x, y) = (along(0)?, along(1)?);
+        Ok(if x.fetches() >= y.fetches() { x } else { y })
+    }
+
     /// How many texels the ray crosses on its way through the relief, if it can be followed.
     fn check_slant(&self, [x, y, z]: [f32; 3]) -> Result<f32> {
         const MOST: f32 = 16_384.0;

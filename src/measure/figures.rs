@@ -95,13 +95,7 @@ impl MeasureOptions {
 
     /// Fails if a ray along one of the axes cannot be followed; others cross fewer texels.
     fn check_views(&self, material: &Material) -> Result<()> {
-        for elevation in self.elevations() {
-            let (z, across) = elevation.to_radians().sin_cos();
-            for eye in [[across, 0.0, z], [0.0, across, z]] {
-                material.truth(eye.map(|part| part as f32))?;
-            }
-        }
-        Ok(())
+        self.elevations().into_iter().try_for_each(|elevation| material.truth_at(elevation).map(drop))
     }
 
     /// The longest side of the part that is measured, in texels.

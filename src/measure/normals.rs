@@ -36,11 +36,7 @@ impl<'a> TrueNormals<'a> {
             Filter::Scharr => [10.0, 3.0],
             Filter::Prewitt => [1.0, 1.0],
         };
-        let greatest = match heights.heights() {
-            Heights::U8(_) => 255.0,
-            Heights::U16(_) => 65_535.0,
-            Heights::F32(_) => 1.0,
-        };
+        let greatest = heights.height_type().greatest_code().map_or(1.0, f64::from);
         let divisor = f64::from(q) * 2.0 * (centre + 2.0 * outer) * greatest;
         let per_difference = [x, y].map(|part| f64::from(part) / divisor);
         Ok(Self { heights, options: *options, greatest, per_difference, weights: [centre, outer] })

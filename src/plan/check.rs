@@ -8,7 +8,8 @@ use super::subject::Reduced;
 use crate::error::Result;
 use crate::io::{NormalReadOptions, ParallaxReadOptions};
 use crate::map::{
-    Channels, Codes, CodesRef, Depth, HeightMap, Maps, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Size,
+    Channels, CodeMap, Codes, CodesRef, Depth, HeightMap, MapFormat, Maps, NormalFormat, NormalMap, ParallaxFormat,
+    ParallaxMap, Size,
 };
 use crate::material::{ParallaxMethod, Texture};
 use crate::measure::digits;
@@ -74,6 +75,9 @@ struct Checking<'a> {
     broken: Vec<String>,
 }
 
+/// How a file stores a map: the bits of a code, and the components of a normal.
+type Stored = (Depth, Option<Channels>);
+
 impl Checking<'_> {
     /// Checks that no prediction is beyond what the scene allows: no plan writes such a one.
     fn tolerances(&mut self) {
@@ -109,22 +113,34 @@ impl Checking<'_> {
             convention: format.convention,
             ..NormalReadOptions::default()
         };
-        let found = |(baked, _): (NormalMap, _)| Ok((found(path, &baked, format.depth)?, baked));
-        let baked = match NormalMap::read_with(path, &read).and_then(found) {
-            Ok((found, baked)) if self.is_as_predicted(path, map, baked.size(), found) => baked,
-            Ok(_) => return Ok(None),
-            Err(error) => {
-                self.broken.push(error.to_string());
-                return Ok(None);
-            }
-        };
-        if !self.is_reduced(path, baked.size()) {
+        let found = |(baked, _): (NormalMap, _)| found(path, &baked, format.depth).map(|found| (baked, found));
+        let Some(baked) = self.as_planned(path, map, NormalMap::read_with(path, &read).and_then(found)) else {
             return Ok(None);
-        }
+        };
         let largest = self.reduced.visible.errors(&Texture::of_normals(&baked, self.facts.edges)).largest;
         let what = format!("{}: normals are off by", path.display());
         self.compare(&what, "at most", largest, most, [largest, *predicted].map(degrees));
         Ok(Some(baked))
+    }
+
+    /// What was read, if it is the map that was predicted, of the reduced height map.
+    fn as_planned<F: MapFormat>(
+        &mut self,
+        path: &Path,
+        map: &MapPrediction,
+        read: Result<(CodeMap<F>, Stored)>,
+    ) -> Option<CodeMap<F>> {
+        match read {
+            Ok((baked, found)) => {
+                let size = baked.size();
+                let is_planned = self.is_as_predicted(path, map, size, found) && self.is_reduced(path, size);
+                is_planned.then_some(baked)
+            }
+            Err(error) => {
+                self.broken.push(error.to_string());
+                None
+            }
+        }
     }
 
     /// Whether a map of this size is of the reduced height map.
@@ -171,17 +187,8 @@ impl Checking<'_> {
 
     /// Checks the parallax map texel by texel, and returns it if it is of the planned size.
     fn parallax_map(&mut self, path: &Path, map: &MapPrediction) -> Result<Option<ParallaxMap>> {
-        let baked = match read_parallax(path, map.parallax()) {
-            Ok((baked, depth)) if self.is_as_predicted(path, map, baked.size(), (depth, None)) => baked,
-            Ok(_) => return Ok(None),
-            Err(error) => {
-                self.broken.push(error.to_string());
-                return Ok(None);
-            }
-        };
-        if !self.is_reduced(path, baked.size()) {
-            return Ok(None);
-        }
+        let read = read_parallax(path, map.parallax()).map(|(baked, depth)| (baked, (depth, None)));
+        let Some(baked) = self.as_planned(path, map, read) else { return Ok(None) };
         let (error, predicted) = (self.reduced.parallax_error(&baked)?, self.prediction.parallax.value.unwrap_or(0.0));
         let most = match self.prediction.precision {
             Precision::Exact => predicted * (1.0 + MARGIN),
@@ -219,13 +226,7 @@ impl Checking<'_> {
     }
 
     /// Whether extension, size, depth and components are those that were predicted, and with them the bytes.
-    fn is_as_predicted(
-        &mut self,
-        path: &Path,
-        map: &MapPrediction,
-        size: Size,
-        (depth, channels): (Depth, Option<Channels>),
-    ) -> bool {
+    fn is_as_predicted(&mut self, path: &Path, map: &MapPrediction, size: Size, (depth, channels): Stored) -> bool {
         let extension = path.extension().unwrap_or_default().to_string_lossy().into_owned();
         let count = channels.map_or(1, Channels::count);
         let bytes = size.texels() * count * depth.bytes();
@@ -257,7 +258,7 @@ impl Checking<'_> {
 }
 
 /// The depth and components of a normal map file: a PNG of x and y has three channels, the third of zeros.
-fn found(path: &Path, read: &NormalMap, predicted: Depth) -> Result<(Depth, Option<Channels>)> {
+fn found(path: &Path, read: &NormalMap, predicted: Depth) -> Result<Stored> {
     let (depth, mut channels) = (stored_depth(read.codes(), predicted), read.format().channels);
     if path.extension().is_some_and(|extension| extension == "png") && channels == Channels::Xy {
         let whole = NormalReadOptions { encoding: Some(read.format().encoding), ..NormalReadOptions::default() };

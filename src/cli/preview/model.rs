@@ -33,9 +33,10 @@ pub fn meshes(path: &Path, arguments: &PreviewArguments) -> Result<Vec<Worn>, Fa
             Some(tangents) => Worn::with_tangents(&mesh, &tangents)?,
             None => Worn::of_tangents(&mesh, &baker.tangents(&mesh, &TangentOptions::default())?)?,
         };
-        Ok((model.placements(primitive)?, worn))
+        Ok(worn)
     };
-    let meshes: Vec<_> = (0..model.primitives().len()).map(worn).collect::<texbake::Result<_>>()?;
+    let worn: Vec<_> = (0..model.primitives().len()).map(worn).collect::<texbake::Result<_>>()?;
+    let meshes: Vec<_> = model.placements()?.into_iter().zip(worn).collect();
     let copied = meshes.iter().map(|(places, worn)| places.len() as u64 * worn.bytes()).sum::<u64>();
     if copied > max_bytes {
         let reason = format!("its meshes take {copied} bytes with all copies, above the limit of {max_bytes}");

@@ -6,7 +6,7 @@ mod replaced;
 use super::document::{Document, ModelFile};
 use super::edit::{Edited, Made};
 use super::elements::Elements;
-use super::scene::{Placement, placements};
+use super::scene::{Placement, UNMOVED, placements};
 use super::select::{Geometry, Place, Selection, doubts, has_tangents, name, named, primitive_doubts};
 use super::write::ModelFormat;
 use super::{container, write};
@@ -198,16 +198,20 @@ impl Model {
         place.map(read).transpose()
     }
 
-    /// Where the nodes of the file's scene put a primitive, and those that are the same: at least one place.
+    /// Where the nodes of the file's scene put each of [`Model::primitives`], and those that are the same: at least one
+    /// place, as it is stored where no node has it.
     ///
     /// # Errors
-    /// [`Error::File`] for nodes that are damaged; [`Error::Parameter`] if there is no such primitive.
-    pub fn placements(&self, primitive: usize) -> Result<Vec<Placement>> {
-        let (_, places) = self.geometry(primitive)?;
-        let mut meshes: Vec<usize> = places.iter().map(|(mesh, _)| *mesh).collect();
-        meshes.dedup();
-        let placed: Result<Vec<_>> = meshes.into_iter().map(|mesh| placements(&self.document, mesh)).collect();
-        Ok(placed?.concat())
+    /// [`Error::File`] for nodes that are damaged.
+    pub fn placements(&self) -> Result<Vec<Vec<Placement>>> {
+        let of_meshes = placements(&self.document)?;
+        let of_primitive = |(_, places): &(Geometry, Vec<Place>)| {
+            let mut meshes: Vec<usize> = places.iter().map(|(mesh, _)| *mesh).collect();
+            meshes.dedup();
+            let placed = |mesh: &usize| of_meshes.get(&(*mesh as u64)).cloned().unwrap_or_else(|| vec![UNMOVED]);
+            meshes.iter().flat_map(placed).collect()
+        };
+        Ok(self.geometries.iter().map(of_primitive).collect())
     }
 
     /// Gives a primitive, and those that are the same, the tangents that its mesh has got; they are put into the file

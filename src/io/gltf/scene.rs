@@ -3,19 +3,20 @@
 use super::document::Document;
 use crate::error::Result;
 use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// A place in a scene: what x, y and z of a mesh become, and where its origin goes.
 pub type Placement = [[f32; 3]; 4];
 
 /// A mesh that no node moves.
-const UNMOVED: Placement = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3]];
+pub(super) const UNMOVED: Placement = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3]];
 
 /// In f64, as nodes multiply.
 type Matrix = [[f64; 3]; 4];
 
-/// The places of a mesh in the scene that the file shows first, or, of a file without scenes, in any; where no node of it
-/// has the mesh, it stands as it is stored. Skins move nothing here.
-pub(super) fn placements(document: &Document, mesh: usize) -> Result<Vec<Placement>> {
+/// The places of each mesh, by its number, in the scene that the file shows first, or, of a file without scenes, in any;
+/// where no node of it has a mesh, that one is not among them. Skins move nothing here.
+pub(super) fn placements(document: &Document) -> Result<BTreeMap<u64, Vec<Placement>>> {
     let scene = document.json["scene"].as_u64().unwrap_or(0) as usize;
     let roots = match document.list("scenes").get(scene) {
         Some(scene) => indices(document, scene, "nodes")?,
@@ -23,7 +24,7 @@ pub(super) fn placements(document: &Document, mesh: usize) -> Result<Vec<Placeme
     };
     let mut waiting: Vec<(usize, Matrix)> =
         roots.into_iter().map(|node| (node, UNMOVED.map(|column| column.map(f64::from)))).collect();
-    let (mut found, mut seen) = (Vec::new(), vec![false; document.list("nodes").len()]);
+    let (mut found, mut seen) = (BTreeMap::<u64, Vec<_>>::new(), vec![false; document.list("nodes").len()]);
     while let Some((index, parent)) = waiting.pop() {
         let node = document.object("nodes", index)?;
         // A node has one parent: what comes again goes round in a circle, or stands twice.
@@ -32,11 +33,11 @@ pub(super) fn placements(document: &Document, mesh: usize) -> Result<Vec<Placeme
         }
         let place = product(parent, matrix(document, index, node)?);
         waiting.extend(indices(document, node, "children")?.into_iter().map(|child| (child, place)));
-        if node["mesh"].as_u64() == Some(mesh as u64) {
-            found.push(place.map(|column| column.map(|part| part as f32)));
+        if let Some(mesh) = node["mesh"].as_u64() {
+            found.entry(mesh).or_default().push(place.map(|column| column.map(|part| part as f32)));
         }
     }
-    Ok(if found.is_empty() { vec![UNMOVED] } else { found })
+    Ok(found)
 }
 
 fn indices(document: &Document, object: &Value, field: &str) -> Result<Vec<usize>> {

@@ -1,6 +1,6 @@
 //! The search for a parallax method: fewest lookups first.
 
-use super::sides::{Sides, steps};
+use super::sides::Sides;
 use super::{MapChoice, ParallaxChoice, bake, describe, formats, material};
 use crate::error::Result;
 use crate::map::{Depth, NormalMap, ParallaxFormat};
@@ -76,8 +76,11 @@ impl<'a> Search<'a> {
             methods.extend([1.0, 3.0].map(|limit| ParallaxMethod::Plane { limit }));
         }
         methods.extend((1..=MOST_STEPS).map(ParallaxMethod::steps));
-        // From there to steps of a sixteenth of a texel.
-        let most = 4 * steps(&self.finest, self.subject.seen.angle)?;
+        // The truth's steps are of a quarter of a texel: on to a sixteenth.
+        let most = match self.finest.truth_at(self.subject.seen.angle)? {
+            ParallaxMethod::Relief { steps, .. } => 4 * steps,
+            method => method.fetches(),
+        };
         let halvings = (2..).map(|power| 1u32 << power).take_while(|steps| *steps < most);
         let relief = |steps| ParallaxMethod::Relief { steps, bisections: BISECTIONS };
         methods.extend(halvings.chain([most]).map(relief));

@@ -103,15 +103,6 @@ fn elevations(shallowest: f64) -> Vec<f64> {
     elevations
 }
 
-/// The steps of a quarter of a texel at an elevation, along the axis that takes more of them.
-pub(super) fn steps(material: &Material, elevation: f64) -> Result<u32> {
-    let (z, across) = libm::sincos(elevation.to_radians());
-    let (z, across) = (z as f32, across as f32);
-    let (x, y) = (material.truth([across, 0.0, z])?, material.truth([0.0, across, z])?);
-    let steps = |truth| if let ParallaxMethod::Relief { steps, .. } = truth { steps } else { 1 };
-    Ok(steps(x).max(steps(y)))
-}
-
 /// The largest offset that can be seen at the shallowest angle a, in pixels: |2h - 1| s/2 cot a texels of the greatest
 /// |2h - 1|, the offset of relief as high as it gets.
 fn largest_offset(heights: &HeightMap, options: &BakeOptions, seen: Seen) -> Result<f64> {

@@ -12,7 +12,7 @@ fn placements(nodes: Value, scenes: Value) -> texbake::Result<Vec<Placement>> {
     file.mesh(json!({ "attributes": { "POSITION": position, "TEXCOORD_0": texcoord }, "material": 0 }));
     file.json["nodes"] = nodes;
     file.json["scenes"] = scenes;
-    file.model().placements(0)
+    Ok(file.model().placements()?.remove(0))
 }
 
 #[test]
