@@ -9,7 +9,7 @@ use super::role::{Role, check_same_size};
 use super::targets::{self, Files};
 use crate::baker::{Baker, Blended};
 use crate::error::{Error, Result};
-use crate::io::create_normals;
+use crate::io::{WriteOptions, create_normals_with};
 use crate::map::{NormalFormat, Size};
 use crate::ops::blend::{BlendInputs, BlendOptions};
 use crate::stream::{Monitor, NormalRows};
@@ -31,6 +31,8 @@ pub struct BlendJob {
     pub output: PathBuf,
     /// How they are blended.
     pub options: BlendOptions,
+    /// How the output is written.
+    pub write: WriteOptions,
     /// Where it runs.
     pub baker: Arc<Baker>,
 }
@@ -91,7 +93,7 @@ impl BlendJob {
             };
             let create = |size| {
                 create_folder_of(&self.output)?;
-                create_normals(&self.output, size, self.options.format)
+                create_normals_with(&self.output, size, self.options.format, &self.write)
             };
             let blended = self.baker.blend_rows(&open, &create, &self.options, monitor);
             let all_read = blended.is_ok();

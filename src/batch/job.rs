@@ -8,7 +8,7 @@ use super::targets::{self, Files};
 use crate::baker::{Baked, Baker};
 use crate::error::{Error, Result};
 use crate::exact::Scale;
-use crate::io::{ReadOptions, create_normals, create_parallax};
+use crate::io::{ReadOptions, WriteOptions, create_normals_with, create_parallax_with};
 use crate::map::{Maps, Size};
 use crate::ops::bake::BakeOptions;
 use crate::stream::{Monitor, RowsOut};
@@ -30,6 +30,8 @@ pub struct Job {
     pub read: ReadOptions,
     /// What is baked. A scale in texels is one of texels of the file, whatever it is reduced by. Filter and edges do not matter to a parallax map with a given normal map.
     pub options: BakeOptions,
+    /// How the outputs are written.
+    pub write: WriteOptions,
     /// Where it runs.
     pub baker: Arc<Baker>,
 }
@@ -190,8 +192,10 @@ impl Job {
         let normal = normal.as_ref().zip(self.options.normal);
         let parallax = parallax.as_ref().zip(self.options.parallax);
         Ok(Maps {
-            normal: normal.map(|(path, format)| create_normals(path, size, format)).transpose()?,
-            parallax: parallax.map(|(path, format)| create_parallax(path, size, format)).transpose()?,
+            normal: normal.map(|(path, format)| create_normals_with(path, size, format, &self.write)).transpose()?,
+            parallax: parallax
+                .map(|(path, format)| create_parallax_with(path, size, format, &self.write))
+                .transpose()?,
         })
     }
 }
@@ -222,6 +226,7 @@ mod tests {
             normals: Some(given),
             read: ReadOptions::default(),
             options: BakeOptions::default(),
+            write: WriteOptions::default(),
             baker: Arc::new(Baker::reference()),
         };
         let failure = job.failure(&job.run(&Monitor::default(), &|_| ())).unwrap();

@@ -5,14 +5,15 @@
 //! ```no_run
 //! use std::sync::Arc;
 //! use texbake::batch::{Job, MapKind, NameTemplate, Search, run};
-//! use texbake::{BakeOptions, Baker, io::ReadOptions, stream::Monitor};
+//! use texbake::io::{ReadOptions, WriteOptions};
+//! use texbake::{BakeOptions, Baker, stream::Monitor};
 //!
 //! let baker = Arc::new(Baker::auto());
 //! let (found, _unreadable_folders) = Search::default().find(&["textures".into()]);
 //! let jobs = found.iter().map(|map| {
 //!     let outputs = NameTemplate::default().outputs(map, &[MapKind::Normal], "baked".as_ref(), "png")?;
-//!     let (read, options) = (ReadOptions::default(), BakeOptions::default());
-//!     Ok(Job { input: map.path.clone(), outputs, normals: None, read, options, baker: baker.clone() })
+//!     let (read, write, options) = (ReadOptions::default(), WriteOptions::default(), BakeOptions::default());
+//!     Ok(Job { input: map.path.clone(), outputs, normals: None, read, options, write, baker: baker.clone() })
 //! });
 //! let jobs: Vec<Job> = jobs.collect::<texbake::Result<_>>()?;
 //! for (job, outcome) in jobs.iter().zip(run(&jobs, 8, &Monitor::default(), &|_| ())) {

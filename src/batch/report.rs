@@ -167,6 +167,8 @@ pub struct Options {
     pub iterations: Option<u32>,
     /// Exact or fast.
     pub precision: String,
+    /// How hard files are compressed.
+    pub compression: String,
     /// The channel that was read.
     pub channel: Option<String>,
     /// What the height codes mean.
@@ -369,6 +371,7 @@ impl Options {
             parallax_bits: parallax.map(|format| format.depth.to_string()),
             iterations: parallax.map(|_| iterations.get()),
             precision: precision.to_string(),
+            compression: job.write.compression.to_string(),
             channel: read.channel.as_ref().map(ToString::to_string),
             color_space: read.color_space.to_string(),
             raw: read.raw.map(|layout| layout.to_string()),

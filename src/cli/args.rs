@@ -1,6 +1,6 @@
 //! The command line.
 
-use super::settings::{CodeChoice, Device, HeightInput, NormalOutput, Settings, Slope};
+use super::settings::{CodeChoice, Device, FileOutput, HeightInput, NormalOutput, Settings, Slope};
 use super::values::{ByteSize, MapChoice, WeightPair, choice, iterations, value};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -136,6 +136,9 @@ pub struct ParallaxArguments {
     #[arg(long, value_name = "CHANNELS", value_parser = choice::<Channels>(Channels::NAMES), requires = "normal")]
     #[arg(help_heading = GIVEN_NORMALS)]
     pub normal_channels: Option<Channels>,
+
+    #[command(flatten)]
+    pub file: FileOutput,
 
     #[command(flatten)]
     pub heights: HeightInput,
@@ -353,6 +356,9 @@ pub struct BlendArguments {
 
     #[command(flatten)]
     pub normal: NormalOutput,
+
+    #[command(flatten)]
+    pub file: FileOutput,
 
     #[command(flatten)]
     pub device: Device,

@@ -16,7 +16,7 @@ use std::sync::Arc;
 use std::thread::available_parallelism;
 use std::time::Instant;
 use texbake::batch::{Found, Job, JsonFile, MapKind, Report, Search, run};
-use texbake::io::ReadOptions;
+use texbake::io::{ReadOptions, WriteOptions};
 use texbake::{BakeOptions, Error, Maps, ParallaxFormat};
 
 pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
@@ -102,6 +102,7 @@ struct Chosen {
     place: Place,
     options: BakeOptions,
     read: ReadOptions,
+    write: WriteOptions,
 }
 
 impl Chosen {
@@ -118,7 +119,7 @@ impl Chosen {
         let normal = outputs.normal.as_ref().map(|path| settings.normal.format(path)).transpose()?;
         let parallax = outputs.parallax.as_ref().map(|path| parallax(each.parallax(), path)).transpose()?;
         let options = settings.slope.bake(normal, parallax)?;
-        Ok(Some(Self { outputs, place, options, read: settings.input.read() }))
+        Ok(Some(Self { outputs, place, options, read: settings.input.read(), write: settings.file.write() }))
     }
 }
 
@@ -151,7 +152,7 @@ fn jobs<'a>(
             // Where the command line alone would do, the mistake is in the file.
             blame(error, config.filter(|_| choose(&arguments.each).is_ok()))
         })?;
-        let Some(Chosen { outputs, place, options, read }) = chosen else {
+        let Some(Chosen { outputs, place, options, read, write }) = chosen else {
             left_out.push(map);
             continue;
         };
@@ -163,7 +164,7 @@ fn jobs<'a>(
                 baker
             }
         };
-        jobs.push(Job { input: map.path.clone(), outputs, normals: None, read, options, baker });
+        jobs.push(Job { input: map.path.clone(), outputs, normals: None, read, options, write, baker });
     }
     let asks_for_parallax = arguments.each.parallax() != CodeChoice::default();
     if asks_for_parallax && jobs.iter().all(|job| job.outputs.parallax.is_none()) {

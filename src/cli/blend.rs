@@ -75,6 +75,7 @@ fn job(arguments: &BlendArguments, method: Method) -> Result<BlendJob, Failure> 
         mask: formula.mask.clone().map(|path| MaskInput { path, read: mask() }),
         output: arguments.output.clone(),
         options,
+        write: arguments.file.write(),
         baker: Arc::new(open_baker(&arguments.device.place()?)?),
     })
 }

@@ -19,6 +19,7 @@ pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
         normals: None,
         read: settings.input.read(),
         options,
+        write: settings.file.write(),
         baker: Arc::new(open_baker(&settings.device.place()?)?),
     };
     bake_one(job, &ParallaxTelling { iterations: USUAL_ITERATIONS, sidecar: None }, &arguments.reporting)

@@ -17,6 +17,7 @@ pub fn parallax(arguments: &ParallaxArguments) -> Result<Exit, Failure> {
         normals: given_normals(arguments),
         read: arguments.heights.read(),
         options,
+        write: arguments.file.write(),
         baker: Arc::new(open_baker(&arguments.device.place()?)?),
     };
     let sidecar = arguments.json.then(|| arguments.output.with_extension("json"));

@@ -33,20 +33,23 @@ mod sink;
 mod srgb;
 mod temporary;
 mod tiff;
+mod write;
 
 pub use channel::Channel;
 pub use format::{INPUT_EXTENSIONS, default_format, default_parallax_format};
 pub use gltf::{LeftOut, Model, ModelFile, ModelFiles, ModelReadOptions, ModelReport, Placement, Primitive};
 pub use parallax::ParallaxReadOptions;
 pub use raw::{RawKind, RawLayout};
+pub use write::{
+    Compression, WriteOptions, check_normal_format, check_parallax_format, create_normals, create_normals_with,
+    create_parallax, create_parallax_with,
+};
 
 use crate::error::Result;
-use crate::map::{
-    Channels, Convention, Encoding, HeightMap, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Size, TexelFormat,
-};
-use crate::stream::{NormalSource, RowSource, RowsOut, read_map, read_normals};
+use crate::map::{Channels, Convention, Encoding, HeightMap, NormalMap, ParallaxMap};
+use crate::stream::{NormalSource, RowSource, read_map, read_normals};
 use channel::HeightRows;
-use format::{FileFormat, OutputFormat};
+use format::FileFormat;
 use input::Found;
 use normal::NormalRows;
 use samples::Opened;
@@ -214,75 +217,6 @@ fn open_samples(path: &Path, wanted: exr::Wanted<'_>, max_bytes: u64) -> Result<
         FileFormat::Tiff => tiff::open(path, max_bytes),
         FileFormat::Exr => exr::open(path, wanted, max_bytes),
         FileFormat::Raster(format) => raster::open(path, format, max_bytes),
-    }
-}
-
-/// Creates a normal map file; nothing stands under `path` until its rows are complete.
-///
-/// The extension picks the format:
-///
-/// | extension | encoding and depth | xy |
-/// | --- | --- | --- |
-/// | `png` | unorm, biased: 8, 16 | RGB with blue 0 |
-/// | `tif`, `tiff` | unorm, biased, snorm: 8, 16; float: 32f | two samples |
-/// | `exr` | float: 16f, 32f | channels R and G |
-///
-/// # Errors
-/// [`crate::Error::Parameter`] if the format cannot hold `format`; [`crate::Error::File`] for an unknown extension or
-/// a name that cannot be replaced; [`crate::Error::Io`].
-pub fn create_normals(path: &Path, size: Size, format: NormalFormat) -> Result<RowsOut> {
-    create_codes(path, size, format.texel())
-}
-
-/// Creates a parallax map file; nothing stands under `path` until its rows are complete.
-///
-/// The extension picks the format:
-///
-/// | extension | encoding and depth | as |
-/// | --- | --- | --- |
-/// | `png` | biased, unorm: 8, 16 | grey |
-/// | `tif`, `tiff` | snorm, biased, unorm: 8, 16; float: 32f | one sample |
-/// | `exr` | float: 16f, 32f | the channel Y |
-///
-/// # Errors
-/// As [`create_normals`].
-pub fn create_parallax(path: &Path, size: Size, format: ParallaxFormat) -> Result<RowsOut> {
-    create_codes(path, size, format.texel())
-}
-
-/// Fails if a normal map file called `path` cannot hold `format`; nothing is looked up or created.
-///
-/// # Errors
-/// [`crate::Error::Parameter`], or [`crate::Error::File`] for an unknown extension, as [`create_normals`].
-pub fn check_normal_format(path: &Path, format: NormalFormat) -> Result<()> {
-    check_codes(path, format.texel()).map(drop)
-}
-
-/// Fails if a parallax map file called `path` cannot hold `format`; nothing is looked up or created.
-///
-/// # Errors
-/// As [`check_normal_format`].
-pub fn check_parallax_format(path: &Path, format: ParallaxFormat) -> Result<()> {
-    check_codes(path, format.texel()).map(drop)
-}
-
-/// The format of the file `path`, which can hold `format`.
-fn check_codes(path: &Path, format: TexelFormat) -> Result<OutputFormat> {
-    format.check()?;
-    let output = OutputFormat::of(path)?;
-    match output {
-        OutputFormat::Png => png::check(path, format)?,
-        OutputFormat::Tiff => tiff::check(path, format)?,
-        OutputFormat::Exr => exr::check(path, format)?,
-    }
-    Ok(output)
-}
-
-fn create_codes(path: &Path, size: Size, format: TexelFormat) -> Result<RowsOut> {
-    match check_codes(path, format)? {
-        OutputFormat::Png => png::create(path, size, format),
-        OutputFormat::Tiff => tiff::create(path, size, format),
-        OutputFormat::Exr => exr::create(path, size, format),
     }
 }
 

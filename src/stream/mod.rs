@@ -28,8 +28,8 @@ pub use normals::{NormalSource, read_normals};
 pub(crate) use order::RowOrder;
 pub(crate) use reader::{BandReader, read_map_watched};
 pub use reader::{RowSource, read_map};
-pub use writer::RowSink;
 pub(crate) use writer::{CodeSink, CodeWriter};
+pub use writer::{LevelSink, RowSink};
 
 /// Rows of heights from anywhere.
 pub type HeightRows = Box<dyn RowSource>;

@@ -37,6 +37,12 @@ pub trait RowSink: Send {
     /// The system's or the format's reason.
     fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()>;
 
+    /// What takes the rows of the smaller mip levels, while those of the largest come here; `None` if the file has one
+    /// level. It must be dropped before [`RowSink::complete`].
+    fn levels(&mut self) -> Option<Box<dyn LevelSink>> {
+        None
+    }
+
     /// Writes what follows the last row. Of files that belong together, all are complete before any gets its name.
     ///
     /// # Errors
@@ -50,6 +56,18 @@ pub trait RowSink: Send {
     /// # Errors
     /// The system's or the format's reason.
     fn finish(self: Box<Self>) -> Result<()>;
+}
+
+/// The mip levels of a map below its largest.
+///
+/// Level k has max(1, floor(w / 2^k)) x max(1, floor(h / 2^k)) texels, and the last one has a single texel.
+pub trait LevelSink: Send {
+    /// Writes rows of `level`, which is at least 1, from row `first` on. Each row of each level comes once; of one level
+    /// they come from the top, but that row 0 may come last.
+    ///
+    /// # Errors
+    /// The system's or the format's reason.
+    fn write(&mut self, level: usize, first: usize, rows: CodesRef<'_>) -> Result<()>;
 }
 
 /// Bands on their way out: one being filled, one waiting, one being written.

@@ -3,11 +3,13 @@
 //! A key of the settings file is an option of the command line without its dashes, and is read by the same code.
 
 mod device;
+mod file;
 mod formats;
 mod input;
 mod slope;
 
 pub use device::{Backend, Device, Place, open_baker};
+pub use file::FileOutput;
 pub use formats::{CodeChoice, NormalOutput};
 pub use input::{HeightInput, max_bytes};
 pub use slope::Slope;
@@ -25,6 +27,9 @@ pub struct Settings {
     pub normal: NormalOutput,
 
     #[command(flatten)]
+    pub file: FileOutput,
+
+    #[command(flatten)]
     pub input: HeightInput,
 
     #[command(flatten)]
@@ -39,6 +44,7 @@ impl Settings {
         Self {
             slope: self.slope.or(&weaker.slope),
             normal: self.normal.or(&weaker.normal),
+            file: self.file.or(&weaker.file),
             input: self.input.or(weaker.input.clone()),
             device: self.device.or(weaker.device.clone()),
         }

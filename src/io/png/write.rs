@@ -7,6 +7,7 @@
 
 use super::zlib::{IdatStream, first_idat, stored_bytes};
 use crate::error::{Error, Result};
+use crate::io::Compression;
 use crate::io::replace::{Output, Replacement};
 use crate::io::sink::{FileSink, RowEncoder, cannot_hold};
 use crate::map::{CodesRef, Depth, Encoding, Size, TexelFormat};
@@ -43,7 +44,7 @@ struct PngEncoder {
 
 /// Creates a PNG with 8 or 16 bits: grey for one channel, else RGB; xy maps leave blue 0, since PNG's only two-channel
 /// type means transparency.
-pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box<dyn RowSink>> {
+pub(crate) fn create(path: &Path, size: Size, format: TexelFormat, _: Compression) -> Result<Box<dyn RowSink>> {
     let depth = bit_depth(path, format)?;
     let replacement = Replacement::create(path)?;
     let [width, height] = [size.width(), size.height()].map(|side| side as u32);

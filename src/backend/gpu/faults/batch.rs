@@ -8,7 +8,7 @@ use crate::backend::gpu::{Gpu, Untested};
 use crate::backend::{Backend, RowBytes};
 use crate::batch::{Event, Job, Outcome, Report, run};
 use crate::error::Result;
-use crate::io::{RawKind, RawLayout, ReadOptions};
+use crate::io::{RawKind, RawLayout, ReadOptions, WriteOptions};
 use crate::map::{Maps, Size};
 use crate::ops::bake::{BakeOptions, BakePlan};
 use crate::ops::blend::BlendPlan;
@@ -95,6 +95,7 @@ impl Folder {
             normals: None,
             read: ReadOptions { raw, ..Default::default() },
             options: BakeOptions::default(),
+            write: WriteOptions::default(),
             baker: baker.clone(),
         };
         (0..FILES).map(job).collect()
