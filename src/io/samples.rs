@@ -29,6 +29,11 @@ pub(super) trait SampleRows: Send {
 
     /// Whether the last row is reached without decoding those before it.
     fn last_row_is_near(&self) -> bool;
+
+    /// Bytes that are held at most while rows are read.
+    fn held_bytes(&self) -> u64 {
+        self.layout().row_bytes() as u64
+    }
 }
 
 /// An opened file and what its header says.
@@ -112,6 +117,15 @@ impl Samples {
         }
     }
 
+    /// Bytes of all samples.
+    pub fn bytes(&self) -> u64 {
+        match self {
+            Self::U8(samples) => samples.len() as u64,
+            Self::U16(samples) => 2 * samples.len() as u64,
+            Self::F32(samples) => 4 * samples.len() as u64,
+        }
+    }
+
     pub fn as_ref(&self) -> Heights<'_> {
         match self {
             Self::U8(samples) => Heights::U8(samples),
@@ -155,6 +169,10 @@ impl SampleRows for DecodedWhole {
 
     fn last_row_is_near(&self) -> bool {
         true
+    }
+
+    fn held_bytes(&self) -> u64 {
+        self.samples.bytes()
     }
 }
 

@@ -33,6 +33,12 @@ pub trait RowSource: Send {
     fn last_row_is_near(&self) -> bool {
         false
     }
+
+    /// Bytes that the source holds at most while it is read, without the rows that it gives: what it decodes at once,
+    /// and what it keeps to find its rows.
+    fn held_bytes(&self) -> u64 {
+        (self.size().width() * self.height_type().bytes()) as u64
+    }
 }
 
 /// The bands of a [`RowSource`]; a thread reads ahead.

@@ -20,6 +20,8 @@ struct TiffChunks {
     decoder: Decoder<BufReader<File>>,
     layout: Layout,
     grid: Grid,
+    /// Bytes of a strip or tile, in the file's own type.
+    chunk_bytes: u64,
 }
 
 /// How a TIFF is cut into strips or tiles.
@@ -92,7 +94,7 @@ pub(crate) fn open(path: &Path, max_bytes: u64) -> Result<Opened> {
     if sample_type == Some(DecodingSampleType::F64) {
         warnings.push("its 64-bit floats are rounded to 32 bits".into());
     }
-    let chunks = TiffChunks { path: path.into(), decoder, layout, grid };
+    let chunks = TiffChunks { path: path.into(), decoder, layout, grid, chunk_bytes: chunk_bytes as u64 };
     let signed = matches!(sample_type, Some(DecodingSampleType::I8 | DecodingSampleType::I16));
     let says_srgb = profile.is_some_and(|profile| srgb::is_named_by(&profile));
     Ok(Opened { signed, no_data, says_srgb, warnings, ..Opened::new(GroupedRows::new(chunks)) })
@@ -161,6 +163,12 @@ impl GroupDecoder for TiffChunks {
 
     fn group_rows(&self) -> usize {
         self.grid.chunk_rows
+    }
+
+    /// A chunk, the bytes that it comes from if they are read at once, and the table of chunks.
+    fn held_bytes(&self) -> u64 {
+        let Grid { across, down, planes, .. } = self.grid;
+        2 * self.chunk_bytes + (across * down * planes) as u64 * directory::CHUNK_ENTRY_BYTES
     }
 
     fn decode(&mut self, index: usize, group: &mut Samples) -> Result<()> {
