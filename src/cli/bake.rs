@@ -4,23 +4,23 @@ use super::args::{BakeArguments, CheckPlan, PerFile};
 use super::check_plan::PlanCheck;
 use super::config::Config;
 use super::exit::{Exit, Failure};
-use super::interruptible;
 use super::print::{file_table, put, say, summary};
 use super::progress::{Progress, Verbosity};
 use super::settings::{CodeChoice, Place, open_baker};
+use super::stopped_by_interrupts;
 use super::values::MapChoice;
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::thread::available_parallelism;
 use std::time::Instant;
 use texbake::batch::{Found, Job, JsonFile, MapKind, Report, Search, run};
 use texbake::io::{ReadOptions, WriteOptions};
 use texbake::{BakeOptions, Error, Maps, ParallaxFormat};
 
 pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
-    let reporting = &arguments.reporting;
+    let (reporting, resources) = (&arguments.reporting, &arguments.resources);
+    resources.start_threads()?;
     let config = Config::find(arguments.config.as_deref(), &arguments.paths).map_err(Failure::settings)?;
     let search = search(arguments, config.as_ref())?;
     let (found, errors) = search.find(&arguments.paths);
@@ -33,7 +33,7 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     }
     let (jobs, left_out) = jobs(arguments, config.as_ref(), &found)?;
     let check = arguments.check_plan.map(|_| PlanCheck::new(config.as_ref(), &found, &jobs)).transpose()?;
-    let monitor = interruptible();
+    let monitor = stopped_by_interrupts(resources.monitor()?);
     if let (Some(check), Some(CheckPlan::Only)) = (&check, arguments.check_plan) {
         return check.run(reporting.quiet, &monitor);
     }
@@ -72,10 +72,10 @@ pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
     })
 }
 
-/// One more than the cores: while the disk takes one file (its bytes are there before it has its name), another is
+/// One more than the threads: while the disk takes one file (its bytes are there before it has its name), another is
 /// baked. More jobs were no faster, and each holds its own rows.
 fn usual_jobs() -> usize {
-    1 + available_parallelism().map_or(1, NonZeroUsize::get)
+    1 + rayon::current_num_threads()
 }
 
 /// The suffixes of the command line, else of the settings, else the usual ones.

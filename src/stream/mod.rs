@@ -6,6 +6,7 @@
 
 mod ahead;
 mod band;
+mod budget;
 mod channel;
 mod layers;
 mod memory;
@@ -19,6 +20,7 @@ mod thread;
 mod writer;
 
 pub(crate) use band::{Band, HeightBand, HeightBands};
+pub(crate) use channel::BUFFERS;
 pub(crate) use layers::{LayerBand, LayerBands, LayerReader, LayerSource, MapLayers};
 pub(crate) use memory::{MapBands, MapSink};
 pub use monitor::Monitor;
