@@ -1,7 +1,7 @@
 //! The command line.
 
 use super::resources::Resources;
-use super::settings::{CodeChoice, Device, FileOutput, HeightInput, NormalOutput, Settings, Slope};
+use super::settings::{CodeChoice, Device, FileOutput, HeightInput, NormalOutput, Settings, Slope, Tiles};
 use super::values::{ByteSize, MapChoice, WeightPair, choice, iterations, value};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -146,6 +146,9 @@ pub struct ParallaxArguments {
 
     #[command(flatten)]
     pub heights: HeightInput,
+
+    #[command(flatten)]
+    pub tiles: Tiles,
 
     #[command(flatten)]
     pub device: Device,

@@ -14,7 +14,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
-use texbake::batch::{Found, Job, JsonFile, MapKind, Report, Search, run};
+use texbake::batch::{Found, Job, JsonFile, MapKind, Neighbours, Report, Search, TileFolders, run};
 use texbake::io::{ReadOptions, WriteOptions};
 use texbake::{BakeOptions, Error, Maps, ParallaxFormat};
 
@@ -100,6 +100,7 @@ fn blame(error: Error, config: Option<&Config>) -> Failure {
 struct Chosen {
     outputs: Maps<PathBuf>,
     place: Place,
+    neighbours: Option<Neighbours>,
     options: BakeOptions,
     read: ReadOptions,
     write: WriteOptions,
@@ -107,7 +108,7 @@ struct Chosen {
 
 impl Chosen {
     /// `None` if the file gets no map.
-    fn new(each: &PerFile, map: &Found, out: &Path) -> texbake::Result<Option<Self>> {
+    fn new(each: &PerFile, map: &Found, out: &Path, folders: &mut TileFolders) -> texbake::Result<Option<Self>> {
         let settings = &each.settings;
         let maps = MapChoice::kinds(each.maps.as_deref().unwrap_or(&[MapChoice::Map(MapKind::Normal)]))?;
         if maps.is_empty() {
@@ -119,7 +120,9 @@ impl Chosen {
         let normal = outputs.normal.as_ref().map(|path| settings.normal.format(path)).transpose()?;
         let parallax = outputs.parallax.as_ref().map(|path| parallax(each.parallax(), path)).transpose()?;
         let options = settings.slope.bake(normal, parallax)?;
-        Ok(Some(Self { outputs, place, options, read: settings.input.read(), write: settings.file.write() }))
+        let neighbours = settings.tiles.around_in(folders, &map.path, &options)?;
+        let (read, write) = (settings.input.read(), settings.file.write());
+        Ok(Some(Self { outputs, place, neighbours, options, read, write }))
     }
 }
 
@@ -143,16 +146,16 @@ fn jobs<'a>(
     config: Option<&Config>,
     found: &'a [Found],
 ) -> Result<(Vec<Job>, Vec<&'a Found>), Failure> {
-    let mut bakers = HashMap::new();
+    let (mut bakers, mut folders) = (HashMap::new(), TileFolders::default());
     let (mut jobs, mut left_out) = (Vec::new(), Vec::new());
     for map in found {
         let below = config.map_or_else(PerFile::default, |config| config.settings(&map.relative()));
-        let choose = |settings| Chosen::new(settings, map, &arguments.out);
+        let mut choose = |settings| Chosen::new(settings, map, &arguments.out, &mut folders);
         let chosen = choose(&arguments.each.clone().or(&below)).map_err(|error| {
             // Where the command line alone would do, the mistake is in the file.
             blame(error, config.filter(|_| choose(&arguments.each).is_ok()))
         })?;
-        let Some(Chosen { outputs, place, options, read, write }) = chosen else {
+        let Some(Chosen { outputs, place, neighbours, options, read, write }) = chosen else {
             left_out.push(map);
             continue;
         };
@@ -164,7 +167,8 @@ fn jobs<'a>(
                 baker
             }
         };
-        jobs.push(Job { input: map.path.clone(), outputs, normals: None, read, options, write, baker });
+        let input = map.path.clone();
+        jobs.push(Job { input, outputs, normals: None, neighbours, read, options, write, baker });
     }
     let asks_for_parallax = arguments.each.parallax() != CodeChoice::default();
     if asks_for_parallax && jobs.iter().all(|job| job.outputs.parallax.is_none()) {

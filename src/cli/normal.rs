@@ -18,6 +18,7 @@ pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
         input: arguments.input.clone(),
         outputs: Maps { normal: Some(arguments.output.clone()), parallax: None },
         normals: None,
+        neighbours: settings.tiles.around(&arguments.input, &options)?,
         read: settings.input.read(),
         options,
         write: settings.file.write(),

@@ -16,6 +16,7 @@ pub fn parallax(arguments: &ParallaxArguments) -> Result<Exit, Failure> {
         input: arguments.input.clone(),
         outputs: Maps { normal: None, parallax: Some(arguments.output.clone()) },
         normals: given_normals(arguments),
+        neighbours: arguments.tiles.around(&arguments.input, &options)?,
         read: arguments.heights.read(),
         options,
         write: arguments.file.write(),
