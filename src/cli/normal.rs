@@ -11,7 +11,8 @@ use texbake::batch::Job;
 
 pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
     let settings = &arguments.settings;
-    let format = settings.normal.format(&arguments.output)?;
+    let write = settings.file.write();
+    let format = settings.normal.format(&arguments.output, &write)?;
     let options = settings.slope.bake(Some(format), None)?;
     let job = Job {
         input: arguments.input.clone(),
@@ -19,7 +20,7 @@ pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
         normals: None,
         read: settings.input.read(),
         options,
-        write: settings.file.write(),
+        write,
         baker: Arc::new(open_baker(&settings.device.place()?)?),
     };
     bake_one(job, &ParallaxTelling { iterations: USUAL_ITERATIONS, sidecar: None }, &arguments.reporting)

@@ -32,6 +32,7 @@ mod shrink;
 mod sink;
 mod srgb;
 mod temporary;
+mod texture;
 mod tiff;
 mod write;
 
@@ -40,9 +41,10 @@ pub use format::{INPUT_EXTENSIONS, default_format, default_parallax_format};
 pub use gltf::{LeftOut, Model, ModelFile, ModelFiles, ModelReadOptions, ModelReport, Placement, Primitive};
 pub use parallax::ParallaxReadOptions;
 pub use raw::{RawKind, RawLayout};
+pub use texture::BlockCompression;
 pub use write::{
-    Compression, WriteOptions, check_normal_format, check_parallax_format, create_normals, create_normals_with,
-    create_parallax, create_parallax_with,
+    Compression, WriteOptions, check_normal_format, check_normals_with, check_parallax_format, check_parallax_with,
+    create_normals, create_normals_with, create_parallax, create_parallax_with,
 };
 
 use crate::error::Result;
