@@ -117,18 +117,18 @@ impl Chosen {
         let (name, format) = (each.name.clone().unwrap_or_default(), each.format.as_deref().unwrap_or("png"));
         let outputs = name.outputs(map, &maps, out, format)?;
         let place = settings.device.place()?;
-        let normal = outputs.normal.as_ref().map(|path| settings.normal.format(path)).transpose()?;
-        let parallax = outputs.parallax.as_ref().map(|path| parallax(each.parallax(), path)).transpose()?;
+        let write = settings.file.write();
+        let normal = outputs.normal.as_ref().map(|path| settings.normal.format(path, &write)).transpose()?;
+        let parallax = outputs.parallax.as_ref().map(|path| parallax(each.parallax(), path, &write)).transpose()?;
         let options = settings.slope.bake(normal, parallax)?;
         let neighbours = settings.tiles.around_in(folders, &map.path, &options)?;
-        let (read, write) = (settings.input.read(), settings.file.write());
-        Ok(Some(Self { outputs, place, neighbours, options, read, write }))
+        Ok(Some(Self { outputs, place, neighbours, options, read: settings.input.read(), write }))
     }
 }
 
 /// The format of a parallax map; here its options have longer names.
-fn parallax(codes: CodeChoice, output: &Path) -> texbake::Result<ParallaxFormat> {
-    codes.parallax(output).map_err(|error| match error {
+fn parallax(codes: CodeChoice, output: &Path, write: &WriteOptions) -> texbake::Result<ParallaxFormat> {
+    codes.parallax(output, write).map_err(|error| match error {
         Error::Parameter { parameter: "bits", value, range } => {
             Error::Parameter { parameter: "parallax-bits", value, range }
         }

@@ -12,7 +12,8 @@ use texbake::batch::Job;
 pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
     let (settings, resources) = (&arguments.settings, &arguments.resources);
     resources.start_threads()?;
-    let format = settings.normal.format(&arguments.output)?;
+    let write = settings.file.write();
+    let format = settings.normal.format(&arguments.output, &write)?;
     let options = settings.slope.bake(Some(format), None)?;
     let job = Job {
         input: arguments.input.clone(),
@@ -21,7 +22,7 @@ pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
         neighbours: settings.tiles.around(&arguments.input, &options)?,
         read: settings.input.read(),
         options,
-        write: settings.file.write(),
+        write,
         baker: Arc::new(open_baker(&settings.device.place()?)?),
     };
     let telling = ParallaxTelling { iterations: USUAL_ITERATIONS, sidecar: None };
