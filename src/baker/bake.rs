@@ -2,13 +2,14 @@
 
 use super::write::{as_dyn, whole_sink, write_watched};
 use super::{Baker, Ran};
-use crate::backend::{Backend, RowBytes};
+use crate::backend::RowBytes;
 use crate::error::{Error, Result};
 use crate::exact::AxisScale;
 use crate::map::{CodesMut, Edge, HeightMap, HeightType, Maps, NormalMap, ParallaxMap, Size, TexelFormat};
+use crate::mips::bake_with_levels;
 use crate::ops::bake::{BakeOptions, BakePlan, NormalOptions, ParallaxOptions};
 use crate::stream::{
-    BandReader, CodeSink, HeightRows, MapBands, MapSink, Monitor, RowOrder, RowsOut, read_map_watched,
+    BandReader, HeightBands, HeightRows, MapBands, MapSink, Monitor, RowOrder, RowsOut, read_map_watched,
 };
 
 /// How a bake ran.
@@ -135,6 +136,9 @@ impl Baker {
     /// no more than 64 MiB, else decoded twice. What the source itself holds comes on top:
     /// [`crate::io::open_heights`] decodes some formats whole.
     ///
+    /// Where a sink has [`levels`](crate::stream::RowSink::levels), the smaller mip levels of its map are baked too, as
+    /// [`Baker::bake_levels`] does.
+    ///
     /// `create` makes a sink for each map that the options ask for. Both may be called again if a GPU fails and the
     /// job moves to the CPU; no row of the failed try is kept.
     ///
@@ -153,15 +157,17 @@ impl Baker {
             let plan = BakePlan::new(options, source.size(), source.height_type())?;
             let sinks = create(plan.size)?;
             check_maps(&plan, &sinks)?;
-            let sinks = sinks.into_vec();
+            let mut sinks = sinks.into_vec();
             let all_take_it_last = sinks.iter().all(|sink| sink.takes_first_row_last());
             let order = match (plan.edges.y, plan.size.height()) {
                 (Edge::Wrap, height) if height > 1 && all_take_it_last => RowOrder::FirstRowLast,
                 _ => RowOrder::FromTop,
             };
             let formats: Vec<TexelFormat> = plan.outputs().collect();
+            let levels = sinks.iter_mut().map(|sink| sink.levels().map(|levels| levels as _)).collect();
             write_watched(sinks, &formats, plan.size, order, monitor, |sinks| {
-                stream(backend, &plan, source, order, monitor, sinks)
+                let bake = |bands: &mut dyn HeightBands| bake_with_levels(backend, &plan, order, bands, sinks, levels);
+                stream(source, &plan, order, backend.band_rows(RowBytes::of_bake(&plan)), monitor, bake)
             })?;
             Ok(plan)
         })?;
@@ -178,21 +184,20 @@ fn check_maps<T>(plan: &BakePlan, maps: &Maps<T>) -> Result<()> {
     Err(Error::parameter("maps", "others", "those that the options ask for"))
 }
 
-/// Sends the rows of a source through a backend into sinks.
+/// Bakes the rows of a source, cut into bands.
 fn stream(
-    backend: &dyn Backend,
-    plan: &BakePlan,
     mut source: HeightRows,
+    plan: &BakePlan,
     order: RowOrder,
+    band_rows: usize,
     monitor: &Monitor,
-    sinks: &mut [&mut dyn CodeSink],
+    bake: impl FnOnce(&mut dyn HeightBands) -> Result<()>,
 ) -> Result<()> {
-    let band_rows = backend.band_rows(RowBytes::of_bake(plan));
     let needs_last_row_first = plan.edges.y == Edge::Wrap && order == RowOrder::FromTop;
     let is_far = needs_last_row_first && !source.last_row_is_near();
     if is_far && plan.size.texels() * plan.height_type.bytes() <= HELD_BYTES {
         let map = read_map_watched(source.as_mut(), monitor)?;
-        return backend.bake(plan, &mut MapBands::new(&map, plan.edges.y, band_rows), sinks);
+        return bake(&mut MapBands::new(&map, plan.edges.y, band_rows));
     }
-    backend.bake(plan, &mut BandReader::new(source, plan.edges.y, order, band_rows)?, sinks)
+    bake(&mut BandReader::new(source, plan.edges.y, order, band_rows)?)
 }

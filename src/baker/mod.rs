@@ -2,6 +2,7 @@
 
 mod bake;
 mod blend;
+mod levels;
 mod parallax;
 mod tangents;
 mod write;
