@@ -1,7 +1,7 @@
 //! Height maps into all mip levels of their maps, in memory.
 
-use super::write::{as_dyn, whole_sink};
 use super::Baker;
+use super::write::{as_dyn, whole_sink};
 use crate::backend::RowBytes;
 use crate::error::Result;
 use crate::map::{CodeMap, CodesRef, HeightMap, MapFormat, Maps, NormalMap, ParallaxMap, Size};

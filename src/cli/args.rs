@@ -197,6 +197,15 @@ is the name of an option:
 What a shader needs to know of a parallax map goes into the --report; see
 texbake parallax --help.
 
+What was baked is remembered in --out, in the file .texbake-baked: options, and
+BLAKE3 hashes of inputs and outputs. A map is not baked again while all of that
+is as it was; after a kill a run goes on where it stopped. Delete the file, or
+use --force, to bake all.
+
+--watch ends with 130 when it is interrupted (Ctrl-C), with 2 if the settings
+are wrong at the start, and says what fails meanwhile. Where folders send no
+word of changes, as over some networks, run texbake bake again instead.
+
 texbake plan writes a texbake.toml of what a scene needs, with predictions of
 what its maps are off by. --check-plan reads the maps that were baked, measures
 them again, and ends with 1 if a prediction is broken; --check-plan=only bakes
@@ -205,6 +214,8 @@ nothing.
 Examples:
   texbake bake textures --out baked
   texbake bake textures --out baked --maps normal,parallax --scale 24
+  texbake bake textures --out baked --scale 24 --dry-run
+  texbake bake textures --out baked --watch
   texbake bake textures --out baked --convention dx --format tif --bits 16
   texbake bake textures --out baked --format dds --block-compression bc7
   texbake bake dem_1.tif dem_2.tif --out baked --edge clamp --report r.json")]
@@ -230,6 +241,18 @@ pub struct BakeArguments {
     #[arg(long, value_enum, num_args = 0..=1, require_equals = true, default_missing_value = "after")]
     #[arg(value_name = "WHEN", help_heading = "Files")]
     pub check_plan: Option<CheckPlan>,
+
+    /// Bake all files, those too whose maps are what they would be
+    #[arg(long, help_heading = "What is baked")]
+    pub force: bool,
+
+    /// Say what would be baked, and why; nothing is written but a --report
+    #[arg(long, help_heading = "What is baked", conflicts_with_all = ["watch", "check_plan"])]
+    pub dry_run: bool,
+
+    /// Go on: bake again when a height map or texbake.toml is saved, or a height map appears, until interrupted
+    #[arg(long, help_heading = "What is baked", conflicts_with = "check_plan")]
+    pub watch: bool,
 
     /// Files baked at the same time, each with its own rows in memory [default: one more than the cores]
     #[arg(short, long, value_name = "N", help_heading = "Where it runs")]

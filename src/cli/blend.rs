@@ -43,7 +43,7 @@ pub fn blend(arguments: &BlendArguments) -> Result<Exit, Failure> {
         file.write(&BlendReport::new(&job, &name, &blended))?;
     }
     Ok(match FileResult::of(outcome) {
-        FileResult::Baked => Exit::Success,
+        FileResult::Baked | FileResult::Fresh => Exit::Success,
         FileResult::Failed => Exit::Failed,
         FileResult::Stopped | FileResult::NotBegun => {
             say(format_args!("{} was not written", arguments.output.display()));

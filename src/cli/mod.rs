@@ -23,6 +23,7 @@ mod single;
 mod tangents;
 mod values;
 mod verify;
+mod watch;
 
 use args::{Arguments, Command};
 use clap::Parser;
