@@ -1,6 +1,10 @@
 //! PNG, row by row.
 
+mod deflate;
+mod filter;
+mod in_order;
 mod read;
+mod stripe;
 mod write;
 mod zlib;
 
