@@ -18,7 +18,9 @@ mod tests;
 mod thread;
 mod writer;
 
+pub(crate) use ahead::ReadAhead;
 pub(crate) use band::{Band, HeightBand, HeightBands};
+pub(crate) use channel::Filling;
 pub(crate) use layers::{LayerBand, LayerBands, LayerReader, LayerSource, MapLayers};
 pub(crate) use memory::{MapBands, MapSink};
 pub use monitor::Monitor;
