@@ -19,8 +19,9 @@ mod tests;
 mod thread;
 mod writer;
 
+pub(crate) use ahead::ReadAhead;
 pub(crate) use band::{Band, HeightBand, HeightBands};
-pub(crate) use channel::BUFFERS;
+pub(crate) use channel::{BUFFERS, Filling};
 pub(crate) use layers::{LayerBand, LayerBands, LayerReader, LayerSource, MapLayers};
 pub(crate) use memory::{MapBands, MapSink};
 pub use monitor::Monitor;

@@ -5,7 +5,6 @@ use super::band::{Band, HeightBand, HeightBands};
 use super::channel::Filling;
 use super::monitor::Monitor;
 use super::order::RowOrder;
-use super::thread;
 use crate::error::Result;
 use crate::map::{Edge, Grid, HeightMap, HeightType, HeightsMut, Size};
 
@@ -68,7 +67,7 @@ impl BandReader {
             let mut cutter = BandCutter::new(source, edge, order)?;
             while let Some(buffer) = filling.take() {
                 let buffer = buffer.unwrap_or_else(|| cutter.buffer(band_rows));
-                match thread::on_pool(|| cutter.next(buffer, band_rows))? {
+                match cutter.next(buffer, band_rows)? {
                     Some(band) => filling.send(band),
                     None => break,
                 }

@@ -1,6 +1,5 @@
 //! The filters of PNG's rows (PNG specification, section 9): each byte less a guess from its neighbours.
 
-
 /// How the bytes of a row are guessed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Filter {
@@ -12,6 +11,45 @@ pub(super) enum Filter {
     Average = 3,
     /// By the one of left, up and upper left that is nearest to left + up - upper left.
     Paeth = 4,
+}
+
+/// How the filter of each row is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Choice {
+    /// One filter for all rows.
+    Fixed(Filter),
+    /// The filter that leaves the least sum of differences (PNG specification, section 12.7).
+    LeastSum,
+}
+
+impl Choice {
+    /// Appends the filtered `row` as [`Filter::apply`] does, with the chosen filter.
+    pub fn apply(self, row: &[u8], above: &[u8], texel: usize, filtered: &mut Vec<u8>) {
+        let fixed = match self {
+            Self::Fixed(filter) => return filter.apply(row, above, texel, filtered),
+            Self::LeastSum => [Filter::Sub, Filter::Up, Filter::Average, Filter::Paeth],
+        };
+        let start = filtered.len();
+        let mut sum_of = |filter: Filter| {
+            filtered.truncate(start);
+            filter.apply(row, above, texel, filtered);
+            sum_of_differences(&filtered[start + 1..])
+        };
+        // The first of equals.
+        if let Some(least) = fixed.into_iter().min_by_key(|filter| sum_of(*filter)) {
+            filtered.truncate(start);
+            least.apply(row, above, texel, filtered);
+        }
+    }
+}
+
+vectorised! {
+    /// Of bytes that stand for -128 to 127.
+    fn sum_of_differences(filtered: &[u8]) -> u64 {
+        // A byte's sums fit 16 bits for 256 of them, and so they vectorise.
+        let sum_of = |piece: &[u8]| piece.iter().map(|byte| u16::from((*byte as i8).unsigned_abs())).sum::<u16>();
+        filtered.chunks(256).map(|piece| u64::from(sum_of(piece))).sum()
+    }
 }
 
 impl Filter {
@@ -115,11 +153,16 @@ mod tests {
                 Filter::Average => ((u32::from(left(&row, at)) + u32::from(above[at])) / 2) as u8,
                 Filter::Paeth => specified(left(&row, at), above[at], left(&above, at)),
             };
+            let sum =
+                |filtered: &[u8]| filtered[1..].iter().map(|byte| (*byte as i8).unsigned_abs() as usize).sum::<usize>();
+            let mut least = Vec::new();
+            Choice::LeastSum.apply(&row, &above, texel, &mut least);
             for (number, filter) in [(1, Filter::Sub), (2, Filter::Up), (3, Filter::Average), (4, Filter::Paeth)] {
                 let expected: Vec<u8> = (0..600).map(|at| row[at].wrapping_sub(guess(filter, at))).collect();
                 let mut filtered = vec![9];
                 filter.apply(&row, &above, texel, &mut filtered);
                 assert_eq!(filtered, [&[9, number], &expected[..]].concat(), "{filter:?} {texel}");
+                assert!(sum(&least) <= sum(&filtered[1..]), "{filter:?} {texel}");
             }
         }
     }

@@ -6,10 +6,13 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
+/// What is done to a job.
+type Work<T> = Arc<dyn Fn(&mut T) + Send + Sync>;
+
 /// Jobs on their way, the oldest first.
 pub(super) struct InOrder<T> {
     jobs: VecDeque<Arc<Job<T>>>,
-    work: fn(&mut T),
+    work: Work<T>,
 }
 
 struct Job<T> {
@@ -25,8 +28,8 @@ enum State<T> {
 
 impl<T: Send + 'static> InOrder<T> {
     /// Jobs that are done by `work`.
-    pub fn new(work: fn(&mut T)) -> Self {
-        Self { jobs: VecDeque::new(), work }
+    pub fn new(work: impl Fn(&mut T) + Send + Sync + 'static) -> Self {
+        Self { jobs: VecDeque::new(), work: Arc::new(work) }
     }
 
     /// Jobs whose results were not taken.
@@ -38,14 +41,14 @@ impl<T: Send + 'static> InOrder<T> {
     pub fn push(&mut self, job: T) {
         let job = Arc::new(Job { state: Mutex::new(State::Waiting(job)), done: Condvar::new() });
         self.jobs.push_back(job.clone());
-        let work = self.work;
-        rayon::spawn(move || job.run(work));
+        let work = self.work.clone();
+        rayon::spawn(move || job.run(&*work));
     }
 
     /// The oldest job once it is done; `None` if there is none.
     pub fn pop(&mut self) -> Option<T> {
         let job = self.jobs.pop_front()?;
-        job.run(self.work);
+        job.run(&*self.work);
         Some(job.wait())
     }
 }
@@ -56,7 +59,7 @@ impl<T> Job<T> {
     }
 
     /// Does the job if nobody has begun it.
-    fn run(&self, work: fn(&mut T)) {
+    fn run(&self, work: &dyn Fn(&mut T)) {
         let mut state = self.state();
         match std::mem::replace(&mut *state, State::Begun) {
             State::Waiting(mut job) => {

@@ -3,8 +3,11 @@
 mod deflate;
 mod filter;
 mod in_order;
+mod inflate;
 mod read;
+mod rows;
 mod stripe;
+mod unfilter;
 mod write;
 mod zlib;
 

@@ -9,7 +9,7 @@
 //! neither the threads nor the number of rows that come at once.
 
 use super::in_order::InOrder;
-use super::stripe::{Stripe, stripe_rows};
+use super::stripe::{Effort, Stripe, stripe_rows};
 use super::zlib::{self, adler_of_both};
 use crate::error::{Error, Result};
 use crate::io::Compression;
@@ -41,6 +41,7 @@ struct PngEncoder {
     /// The same file, to fill the room that was left.
     file: Output,
     layout: RowLayout,
+    effort: Effort,
     first_row: Vec<u8>,
     /// The stripe that is being filled; those on their way; one that is free.
     stripe: Stripe,
@@ -62,7 +63,17 @@ struct RowLayout {
 
 /// Creates a PNG with 8 or 16 bits: grey for one channel, else RGB; xy maps leave blue 0, since PNG's only two-channel
 /// type means transparency.
-pub(crate) fn create(path: &Path, size: Size, format: TexelFormat, _: Compression) -> Result<Box<dyn RowSink>> {
+pub(crate) fn create(
+    path: &Path,
+    size: Size,
+    format: TexelFormat,
+    compression: Compression,
+) -> Result<Box<dyn RowSink>> {
+    let effort = match compression {
+        Compression::Fast => Effort::Fast,
+        Compression::Balanced => Effort::Balanced,
+        Compression::Small => Effort::Small,
+    };
     let depth = bit_depth(path, format)?;
     let replacement = Replacement::create(path)?;
     let [width, height] = [size.width(), size.height()].map(|side| side as u32);
@@ -84,9 +95,10 @@ pub(crate) fn create(path: &Path, size: Size, format: TexelFormat, _: Compressio
         writer,
         file: replacement.output()?,
         layout: RowLayout { channels: format.channels, depth: format.depth, row_bytes, texel_bytes },
+        effort,
         first_row: Vec::new(),
         stripe,
-        encoding: InOrder::new(Stripe::encode),
+        encoding: InOrder::new(move |stripe: &mut Stripe| stripe.encode(effort)),
         free: None,
         checksum: 1, // of no bytes
         bytes: 0,
@@ -145,12 +157,12 @@ impl RowEncoder for PngEncoder {
     }
 
     fn finish(mut self: Box<Self>) -> Result<()> {
+        // Meanwhile other threads have the stripes before it; a small map needs none.
+        let mut last = std::mem::take(&mut self.stripe);
+        last.encode(self.effort);
         while let Some(stripe) = self.encoding.pop() {
             self.write_stripe(stripe)?;
         }
-        // Nobody else has anything to do: it is not worth a thread.
-        let mut last = std::mem::take(&mut self.stripe);
-        last.encode();
         self.write_stripe(last)?;
         let Self { path, mut writer, mut file, first_row, checksum, bytes, .. } = *self;
         let checksum = adler_of_both(simd_adler32::adler32(&first_row.as_slice()), checksum, bytes);

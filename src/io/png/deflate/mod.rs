@@ -1,13 +1,15 @@
-//! Deflate with Huffman codes made for each block, and matches for runs of zeros only.
+//! Deflate for the stripes of an image: with Huffman codes made for each block and matches for runs of zeros only, or
+//! with all matches.
 //!
 //! A filtered map has hardly anything else that repeats: searching for matches takes most of the time of other
-//! encoders and wins nothing (`benches/png` has the figures). No crate does just this: `fdeflate` is as fast, but its
+//! encoders and wins nothing, but where it is nearly flat (`benches/png` has the figures). No crate does just this: `fdeflate` is as fast, but its
 //! codes are fixed, which costs 7 to 14 % of the size, and the Huffman-only strategy of zlib takes four times as long.
 //! And the stripes of an image, which several threads deflate, must join: every call here ends on a byte's border with
 //! a block that is not the last, where `fdeflate` and libdeflate end the whole stream.
 
 mod bits;
 mod codes;
+mod matches;
 mod runs;
 
 pub(super) use bits::BitWriter;
@@ -16,7 +18,8 @@ use codes::{Code, codes};
 use runs::{Length, runs_of_zeros};
 
 /// Bytes that share codes, about: fewer follow the map more closely, more spend less on codes.
-const BLOCK_BYTES: usize = 128 << 10;
+pub(super) const LONG_BLOCK: usize = 128 << 10;
+pub(super) const SHORT_BLOCK: usize = 32 << 10;
 
 /// The most bytes of a stored block, and the bytes before them.
 pub(super) const STORED_MOST: usize = 0xffff;
@@ -29,15 +32,28 @@ const END: usize = 256;
 /// Bits of a block's header as it is written here.
 const HEADER_BITS: usize = 3 + 5 + 5 + 4 + 19 * 3 + (SYMBOLS + 1) * 4;
 
+/// What repeats, and what codes are made for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Coding {
+    /// Runs of zeros; blocks of about so many bytes.
+    Literals(usize),
+    /// All that a level of zlib finds.
+    Matches(u32),
+}
+
 /// Appends `data`, deflated into blocks of which none is the last, up to a byte's border.
-pub(super) fn deflate(data: &[u8], out: &mut BitWriter) {
-    if !data.is_empty() {
-        // Of equal length, lest the last one be short and its codes dear.
-        let blocks = data.len().div_ceil(BLOCK_BYTES);
-        data.chunks(data.len().div_ceil(blocks)).for_each(|block| write_block(block, out));
+pub(super) fn deflate(data: &[u8], coding: Coding, out: &mut BitWriter) {
+    match coding {
+        Coding::Matches(level) => matches::deflate(data, level, out),
+        Coding::Literals(_) if data.is_empty() => write_stored(&[], out),
+        Coding::Literals(block_bytes) => {
+            // Of equal length, lest the last one be short and its codes dear.
+            let blocks = data.len().div_ceil(block_bytes);
+            data.chunks(data.len().div_ceil(blocks)).for_each(|block| write_block(block, out));
+            // An empty stored block ends on a byte's border.
+            write_stored(&[], out);
+        }
     }
-    // An empty stored block ends on a byte's border.
-    write_stored(&[], out);
 }
 
 fn write_block(block: &[u8], out: &mut BitWriter) {

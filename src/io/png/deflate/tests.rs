@@ -4,12 +4,12 @@ use super::*;
 use std::io::Read;
 
 /// The bytes of stripes that were deflated one by one and joined.
-fn inflated(stripes: &[&[u8]]) -> Vec<u8> {
+fn inflated(stripes: &[&[u8]], coding: Coding) -> Vec<u8> {
     let mut out = BitWriter::default();
     let mut stream = Vec::new();
     for stripe in stripes {
         out.clear();
-        deflate(stripe, &mut out);
+        deflate(stripe, coding, &mut out);
         stream.extend_from_slice(out.bytes());
     }
     stream.extend([1, 0, 0, 0xff, 0xff]);
@@ -22,7 +22,7 @@ fn inflated(stripes: &[&[u8]]) -> Vec<u8> {
 
 fn deflated(bytes: &[u8]) -> Vec<u8> {
     let mut out = BitWriter::default();
-    deflate(bytes, &mut out);
+    deflate(bytes, Coding::Literals(LONG_BLOCK), &mut out);
     out.bytes().to_vec()
 }
 
@@ -50,17 +50,20 @@ fn what_goes_in_comes_out() {
     let doubling: Vec<u8> = (0..17u8).flat_map(|value| std::iter::repeat_n(value, 1 << value)).collect();
     let flat = vec![0; 1_000_000];
     let all = [&runs()[..], &noise(300_000), &doubling, &flat, &[7; 5], &[0], &[]];
-    for bytes in all {
-        assert!(inflated(&[bytes]) == bytes, "{} bytes", bytes.len());
+    for coding in [Coding::Literals(LONG_BLOCK), Coding::Literals(SHORT_BLOCK), Coding::Matches(6), Coding::Matches(9)]
+    {
+        for bytes in all {
+            assert!(inflated(&[bytes], coding) == bytes, "{} bytes, {coding:?}", bytes.len());
+        }
+        assert!(inflated(&all, coding) == all.concat(), "joined, {coding:?}");
     }
-    assert!(inflated(&all) == all.concat(), "joined");
 }
 
 #[test]
 fn every_length_of_a_block_comes_out() {
     let bytes = [runs(), noise(1000)].concat();
-    for length in (0..40).chain([BLOCK_BYTES - 1, BLOCK_BYTES, BLOCK_BYTES + 1]) {
-        assert!(inflated(&[&bytes[..length]]) == bytes[..length], "{length}");
+    for length in (0..40).chain([LONG_BLOCK - 1, LONG_BLOCK, LONG_BLOCK + 1]) {
+        assert!(inflated(&[&bytes[..length]], Coding::Literals(LONG_BLOCK)) == bytes[..length], "{length}");
     }
 }
 
@@ -77,7 +80,7 @@ fn zeros_vanish_and_noise_hardly_grows() {
 /// on average, and 64 bytes are the standard deviation of this many.
 #[test]
 fn codes_are_as_short_as_the_entropy_says() {
-    let bytes: Vec<u8> = noise(BLOCK_BYTES).iter().map(|byte| byte.leading_zeros() as u8 + 1).collect();
-    let (size, entropy) = (deflated(&bytes).len(), BLOCK_BYTES / 4);
+    let bytes: Vec<u8> = noise(LONG_BLOCK).iter().map(|byte| byte.leading_zeros() as u8 + 1).collect();
+    let (size, entropy) = (deflated(&bytes).len(), LONG_BLOCK / 4);
     assert!((entropy - 300..entropy + HEADER_BITS / 8 + 300).contains(&size), "{size}");
 }
