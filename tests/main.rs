@@ -9,6 +9,7 @@ mod faults;
 mod gpu;
 mod inspect;
 mod io;
+mod large;
 mod material;
 mod materials;
 mod measure;

@@ -130,7 +130,7 @@ pub struct ParallaxArguments {
 
     /// Normal map of the same size that gives n_z, instead of the heights' slopes; --scale is then for the numbers in
     /// --json and --report
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["filter", "edge"], help_heading = GIVEN_NORMALS)]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["filter", "edge", "neighbours"], help_heading = GIVEN_NORMALS)]
     pub normal: Option<PathBuf>,
 
     /// How its codes are read [default: unorm; snorm for signed integers, float for floats]

@@ -7,7 +7,7 @@ mod exr;
 mod found;
 mod gltf;
 mod hand_made_png;
-mod hand_made_tiff;
+pub mod hand_made_tiff;
 mod normal;
 mod obj;
 mod parallax;
