@@ -3,6 +3,7 @@
 mod blend;
 #[cfg(feature = "cli")]
 mod cli;
+mod containers;
 mod extremes;
 mod faults;
 #[cfg(feature = "gpu")]

@@ -61,8 +61,8 @@ pub fn create_normals(path: &Path, size: Size, format: NormalFormat) -> Result<R
 /// KTX2 and DDS are linear, and stand from the upper left; xyz is RGBA there, with an alpha of one.
 ///
 /// # Errors
-/// [`crate::Error::Parameter`] if the format cannot hold `format`, or not as `options` say; [`crate::Error::File`] for an
-/// unknown extension, a name that cannot be replaced, or a DDS above 4 GiB; [`crate::Error::Io`].
+/// [`crate::Error::Parameter`] if the format cannot hold `format`, or not as `options` say; [`crate::Error::File`] for
+/// an unknown extension, a name that cannot be replaced, or a DDS above 4 GiB; [`crate::Error::Io`].
 pub fn create_normals_with(path: &Path, size: Size, format: NormalFormat, options: &WriteOptions) -> Result<RowsOut> {
     create_codes(path, size, format.texel(), options)
 }
@@ -98,8 +98,8 @@ pub fn create_parallax_with(
     create_codes(path, size, format.texel(), options)
 }
 
-/// Fails if a normal map file called `path` cannot hold `format` with the default [`WriteOptions`]; nothing is looked up
-/// or created.
+/// Fails if a normal map file called `path` cannot hold `format` with the default [`WriteOptions`]; nothing is looked
+/// up or created.
 ///
 /// # Errors
 /// As [`check_normals_with`].

@@ -20,5 +20,5 @@ mod raw;
 mod replace;
 mod samples;
 mod shrink;
-mod support;
+pub mod support;
 mod tiff;

@@ -13,8 +13,8 @@ pub struct FileOutput {
     #[arg(long, value_parser = choice::<Compression>(Compression::NAMES), help_heading = HEADING)]
     pub compression: Option<Compression>,
 
-    /// Compress .ktx2 and .dds files into blocks that a GPU reads as they are: bc5 keeps x and y of a normal map, bc7 all
-    /// three; a parallax map becomes bc4 with any of them [default: uncompressed]
+    /// Compress .ktx2 and .dds files into blocks that a GPU reads as they are: bc5 keeps x and y of a normal map, bc7
+    /// all three; a parallax map becomes bc4 with any of them [default: uncompressed]
     #[arg(long, value_name = "BLOCKS", value_parser = choice::<BlockCompression>(BlockCompression::NAMES))]
     #[arg(help_heading = HEADING)]
     pub block_compression: Option<BlockCompression>,

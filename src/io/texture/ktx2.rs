@@ -7,8 +7,8 @@ use ktx2::dfd::{Basic, Block};
 use ktx2::{Header, Index, LevelIndex};
 use std::path::Path;
 
-/// Keys in the order of their code points, values with the null that ends them (section 5): the first texel is the upper
-/// left one, and who wrote the file.
+/// Keys in the order of their code points, values with the null that ends them (section 5): the first texel is the
+/// upper left one, and who wrote the file.
 const METADATA: [(&str, &str); 2] =
     [("KTXorientation", "rd\0"), ("KTXwriter", concat!("texbake ", env!("CARGO_PKG_VERSION"), "\0"))];
 
@@ -56,8 +56,8 @@ pub fn lay_out(path: &Path, format: &TextureFormat, levels: &mut [Level]) -> Res
 
 /// The data format descriptor with its length, and the bytes that a reader of the other byte order swaps.
 ///
-/// The transfer function is linear. Primaries are unspecified, since there is no colour: what glTF asks of textures that
-/// are none (KHR_texture_basisu).
+/// The transfer function is linear. Primaries are unspecified, since there is no colour: what glTF asks of textures
+/// that are none (KHR_texture_basisu).
 fn descriptor(path: &Path, format: &TextureFormat) -> Result<(Vec<u8>, u32)> {
     let unknown = |error| Error::file(path, error, "write another format");
     let (mut basic, type_size) = Basic::from_format(format.vulkan).map_err(unknown)?;
@@ -76,4 +76,25 @@ fn metadata() -> Vec<u8> {
         bytes.resize(bytes.len().next_multiple_of(4), 0);
     }
     bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::texture::levels::levels;
+    use crate::map::{NormalFormat, Size};
+
+    #[test]
+    fn levels_stand_beyond_4_gib() {
+        let path = Path::new("n.ktx2");
+        let format = TextureFormat::of(path, NormalFormat::default().texel(), None).unwrap();
+        let mut levels = levels(Size::new(65_536, 65_536).unwrap(), true, &format);
+        let bytes = lay_out(path, &format, &mut levels).unwrap();
+        // Behind the headers, 4^0 + ... + 4^15 = (4^16 - 1) / 3 texels stand before the largest level.
+        let smaller = 4 * ((1u64 << 32) - 1) / 3;
+        let first = levels[16].offset;
+        assert_eq!((levels.len(), levels[0].offset - first, levels[0].bytes), (17, smaller, 1 << 34));
+        let entry = LevelIndex::from_bytes(&bytes[Header::LENGTH..][..LevelIndex::LENGTH].try_into().unwrap());
+        assert_eq!(entry.byte_offset, first + smaller);
+    }
 }

@@ -18,8 +18,8 @@ pub struct Level {
     pub offset: u64,
 }
 
-/// The levels of a texture from the largest, level k of max(1, floor(w / 2^k)) x max(1, floor(h / 2^k)) texels down to a
-/// single one, or the largest alone; all without an offset as yet.
+/// The levels of a texture from the largest, level k of max(1, floor(w / 2^k)) x max(1, floor(h / 2^k)) texels down to
+/// a single one, or the largest alone; all without an offset as yet.
 pub fn levels(size: Size, mips: bool, format: &TextureFormat) -> Vec<Level> {
     let count = if mips { 1 + size.width().max(size.height()).ilog2() } else { 1 };
     let level = |level: u32| {

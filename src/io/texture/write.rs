@@ -1,7 +1,8 @@
 //! Rows on their way to their places in a texture.
 //!
-//! Every row has a place that is known when the file is created, so rows of all levels may come at the same time. Texels
-//! are written as they come; of blocks, a row waits for its four rows of texels, and the topmost one until row 0 is there.
+//! Every row has a place that is known when the file is created, so rows of all levels may come at the same time.
+//! Texels are written as they come; of blocks, a row waits for its four rows of texels, and the topmost one until row 0
+//! is there.
 
 use super::blocks::BlockRow;
 use super::format::{BlockCompression, TextureFormat};
