@@ -5,6 +5,8 @@ mod blend;
 mod cli;
 mod extremes;
 mod faults;
+#[cfg(feature = "cli")]
+mod fresh;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod inspect;

@@ -1,5 +1,6 @@
 //! Height maps into normal and parallax maps.
 
+use super::memory::job_bytes;
 use super::write::{as_dyn, whole_sink, write_watched};
 use super::{Baker, Ran};
 use crate::backend::{Backend, RowBytes};
@@ -8,7 +9,7 @@ use crate::exact::AxisScale;
 use crate::map::{CodesMut, Edge, HeightMap, HeightType, Maps, NormalMap, ParallaxMap, Size, TexelFormat};
 use crate::ops::bake::{BakeOptions, BakePlan, NormalOptions, ParallaxOptions};
 use crate::stream::{
-    BandReader, CodeSink, HeightRows, MapBands, MapSink, Monitor, RowOrder, RowsOut, read_map_watched,
+    BandReader, CodeSink, HeightRows, MapBands, MapSink, Monitor, RowOrder, RowSource, RowsOut, read_map_watched,
 };
 
 /// How a bake ran.
@@ -149,6 +150,7 @@ impl Baker {
         monitor: &Monitor,
     ) -> Result<Baked> {
         let (ran, plan) = self.run(|backend| {
+            let turn = monitor.turn();
             let source = open()?;
             let plan = BakePlan::new(options, source.size(), source.height_type())?;
             let sinks = create(plan.size)?;
@@ -159,6 +161,9 @@ impl Baker {
                 (Edge::Wrap, height) if height > 1 && all_take_it_last => RowOrder::FirstRowLast,
                 _ => RowOrder::FromTop,
             };
+            let held_map = if is_held(&plan, source.as_ref(), order) { plan.map_bytes() } else { 0 };
+            let passing = job_bytes(backend, RowBytes::of_bake(&plan), plan.size.height(), &sinks);
+            let _memory = turn.take(source.held_bytes() + held_map as u64 + passing, monitor)?;
             let formats: Vec<TexelFormat> = plan.outputs().collect();
             write_watched(sinks, &formats, plan.size, order, monitor, |sinks| {
                 stream(backend, &plan, source, order, monitor, sinks)
@@ -178,6 +183,12 @@ fn check_maps<T>(plan: &BakePlan, maps: &Maps<T>) -> Result<()> {
     Err(Error::parameter("maps", "others", "those that the options ask for"))
 }
 
+/// Whether the heights are held in memory, since their last row is needed first, and far.
+fn is_held(plan: &BakePlan, source: &dyn RowSource, order: RowOrder) -> bool {
+    let needs_last_row_first = plan.edges.y == Edge::Wrap && order == RowOrder::FromTop;
+    needs_last_row_first && !source.last_row_is_near() && plan.map_bytes() <= HELD_BYTES
+}
+
 /// Sends the rows of a source through a backend into sinks.
 fn stream(
     backend: &dyn Backend,
@@ -188,9 +199,7 @@ fn stream(
     sinks: &mut [&mut dyn CodeSink],
 ) -> Result<()> {
     let band_rows = backend.band_rows(RowBytes::of_bake(plan));
-    let needs_last_row_first = plan.edges.y == Edge::Wrap && order == RowOrder::FromTop;
-    let is_far = needs_last_row_first && !source.last_row_is_near();
-    if is_far && plan.size.texels() * plan.height_type.bytes() <= HELD_BYTES {
+    if is_held(plan, source.as_ref(), order) {
         let map = read_map_watched(source.as_mut(), monitor)?;
         return backend.bake(plan, &mut MapBands::new(&map, plan.edges.y, band_rows), sinks);
     }

@@ -2,6 +2,7 @@
 
 mod bake;
 mod blend;
+mod memory;
 mod parallax;
 mod tangents;
 mod write;

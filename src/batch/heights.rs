@@ -88,4 +88,8 @@ impl RowSource for Counted {
     fn last_row_is_near(&self) -> bool {
         self.rows.last_row_is_near()
     }
+
+    fn held_bytes(&self) -> u64 {
+        self.rows.held_bytes()
+    }
 }

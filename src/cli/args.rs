@@ -1,5 +1,6 @@
 //! The command line.
 
+use super::resources::Resources;
 use super::settings::{CodeChoice, Device, FileOutput, HeightInput, NormalOutput, Settings, Slope};
 use super::values::{ByteSize, MapChoice, WeightPair, choice, iterations, value};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -71,6 +72,9 @@ pub struct NormalArguments {
 
     #[command(flatten)]
     pub settings: Settings,
+
+    #[command(flatten)]
+    pub resources: Resources,
 
     #[command(flatten)]
     pub reporting: Reporting,
@@ -145,6 +149,9 @@ pub struct ParallaxArguments {
 
     #[command(flatten)]
     pub device: Device,
+
+    #[command(flatten)]
+    pub resources: Resources,
 
     #[command(flatten)]
     pub reporting: Reporting,
@@ -251,6 +258,9 @@ pub struct BakeArguments {
 
     #[command(flatten)]
     pub each: PerFile,
+
+    #[command(flatten)]
+    pub resources: Resources,
 
     #[command(flatten)]
     pub reporting: Reporting,
@@ -385,6 +395,9 @@ pub struct BlendArguments {
 
     #[command(flatten)]
     pub device: Device,
+
+    #[command(flatten)]
+    pub resources: Resources,
 
     #[command(flatten)]
     pub reporting: Reporting,

@@ -4,10 +4,10 @@ use super::args::{BakeArguments, CheckPlan, PerFile};
 use super::check_plan::PlanCheck;
 use super::config::Config;
 use super::exit::{Exit, Failure};
-use super::interruptible;
 use super::print::{file_table, plan_table, put, say, summary};
 use super::progress::{Progress, Verbosity};
 use super::settings::{CodeChoice, Place, open_baker};
+use super::stopped_by_interrupts;
 use super::values::MapChoice;
 use super::watch::watch;
 use std::cell::{OnceCell, RefCell};
@@ -15,7 +15,6 @@ use std::collections::HashMap;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::thread::available_parallelism;
 use std::time::Instant;
 use texbake::batch::{Found, FreshPlan, Job, JsonFile, MapKind, Report, Search};
 use texbake::io::{ReadOptions, WriteOptions};
@@ -24,6 +23,7 @@ use texbake::{BakeOptions, Baker, Error, Maps, ParallaxFormat};
 
 /// Bakes folders, once or until interrupted.
 pub fn bake(arguments: &BakeArguments) -> Result<Exit, Failure> {
+    arguments.resources.start_threads()?;
     let session = Session { arguments, bakers: RefCell::default(), monitor: OnceCell::new() };
     if arguments.watch { watch(&session) } else { session.round(true).map(|round| round.exit) }
 }
@@ -45,9 +45,14 @@ pub struct Round {
 }
 
 impl Session<'_> {
-    /// What an interrupt cancels; before it is first asked for, an interrupt ends the program.
-    pub fn monitor(&self) -> &Monitor {
-        self.monitor.get_or_init(interruptible)
+    /// What bounds the memory of all rounds, and what an interrupt cancels; before it is first asked for, an interrupt
+    /// ends the program.
+    pub fn monitor(&self) -> Result<&Monitor, Failure> {
+        if let Some(monitor) = self.monitor.get() {
+            return Ok(monitor);
+        }
+        let monitor = self.arguments.resources.monitor()?;
+        Ok(self.monitor.get_or_init(|| stopped_by_interrupts(monitor)))
     }
 
     /// Bakes what is stale. The first of several rounds is forced, if that was asked for, and told in full.
@@ -65,7 +70,7 @@ impl Session<'_> {
         }
         let (jobs, left_out) = self.jobs(config.as_ref(), &found)?;
         let check = arguments.check_plan.map(|_| PlanCheck::new(config.as_ref(), &found, &jobs)).transpose()?;
-        let monitor = self.monitor();
+        let monitor = self.monitor()?;
         if let (Some(check), Some(CheckPlan::Only)) = (&check, arguments.check_plan) {
             let exit = check.run(reporting.quiet, monitor)?;
             return Ok(Round { exit, jobs, summary: None });
@@ -124,10 +129,10 @@ fn exit_of_search(errors: &[Error]) -> Exit {
     if errors.is_empty() { Exit::Success } else { Exit::Failed }
 }
 
-/// One more than the cores: while the disk takes one file (its bytes are there before it has its name), another is
+/// One more than the threads: while the disk takes one file (its bytes are there before it has its name), another is
 /// baked. More jobs were no faster, and each holds its own rows.
 fn usual_jobs() -> usize {
-    1 + available_parallelism().map_or(1, NonZeroUsize::get)
+    1 + rayon::current_num_threads()
 }
 
 /// The suffixes of the command line, else of the settings, else the usual ones.

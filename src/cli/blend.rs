@@ -2,10 +2,10 @@
 
 use super::args::{BlendArguments, Formula, Method};
 use super::exit::{Exit, Failure};
-use super::interruptible;
 use super::print::{blend_line, say};
 use super::progress::{Ending, Progress, Verbosity, fallback};
 use super::settings::{max_bytes, open_baker};
+use super::stopped_by_interrupts;
 use super::values::WeightPair;
 use clap::ValueEnum;
 use std::sync::Arc;
@@ -14,6 +14,7 @@ use texbake::io::{NormalReadOptions, ReadOptions};
 use texbake::{BlendMethod, BlendOptions, Convention, Error, Result as BakeResult, Weights};
 
 pub fn blend(arguments: &BlendArguments) -> Result<Exit, Failure> {
+    arguments.resources.start_threads()?;
     let (reporting, method) = (&arguments.reporting, arguments.formula.method());
     let job = job(arguments, method)?;
     let files = job.files();
@@ -21,7 +22,7 @@ pub fn blend(arguments: &BlendArguments) -> Result<Exit, Failure> {
     let report_file = report_file.map(|path| JsonFile::create("report", path, std::slice::from_ref(&files), None));
     let report_file = report_file.transpose()?;
 
-    let monitor = interruptible();
+    let monitor = stopped_by_interrupts(arguments.resources.monitor()?);
     let progress = Progress::new(&[&job.base.path], &monitor, Verbosity::of(reporting, Verbosity::Warnings));
     let blended = progress.during(|| job.run(&monitor, &|size| progress.opened(0, size)));
     let outcome = &blended.outcome;

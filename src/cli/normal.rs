@@ -10,7 +10,8 @@ use texbake::Maps;
 use texbake::batch::Job;
 
 pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
-    let settings = &arguments.settings;
+    let (settings, resources) = (&arguments.settings, &arguments.resources);
+    resources.start_threads()?;
     let format = settings.normal.format(&arguments.output)?;
     let options = settings.slope.bake(Some(format), None)?;
     let job = Job {
@@ -22,5 +23,6 @@ pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
         write: settings.file.write(),
         baker: Arc::new(open_baker(&settings.device.place()?)?),
     };
-    bake_one(job, &ParallaxTelling { iterations: USUAL_ITERATIONS, sidecar: None }, &arguments.reporting)
+    let telling = ParallaxTelling { iterations: USUAL_ITERATIONS, sidecar: None };
+    bake_one(job, &telling, resources, &arguments.reporting)
 }

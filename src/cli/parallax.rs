@@ -10,6 +10,7 @@ use texbake::batch::{Job, NormalInput};
 use texbake::io::NormalReadOptions;
 
 pub fn parallax(arguments: &ParallaxArguments) -> Result<Exit, Failure> {
+    arguments.resources.start_threads()?;
     let options = arguments.slope.bake(None, Some(arguments.codes().parallax(&arguments.output)?))?;
     let job = Job {
         input: arguments.input.clone(),
@@ -22,7 +23,7 @@ pub fn parallax(arguments: &ParallaxArguments) -> Result<Exit, Failure> {
     };
     let sidecar = arguments.json.then(|| arguments.output.with_extension("json"));
     let telling = ParallaxTelling { iterations: arguments.iterations, sidecar: sidecar.as_deref() };
-    bake_one(job, &telling, &arguments.reporting)
+    bake_one(job, &telling, &arguments.resources, &arguments.reporting)
 }
 
 /// The normal map that was given; n_z does not depend on which way its green points.

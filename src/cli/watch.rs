@@ -35,11 +35,11 @@ pub fn watch(session: &Session<'_>) -> Result<Exit, Failure> {
             // A file that is half written, settings with a mistake: the next save mends them.
             Err(failure) => say(format_args!("error: {failure}")),
         }
-        if !has_begun && !is_quiet && !session.monitor().is_cancelled() {
+        if !has_begun && !is_quiet && !session.monitor()?.is_cancelled() {
             say("watching for changes; interrupt (Ctrl-C) to end");
         }
         has_begun = true;
-        if !changes.wait(&known, session.monitor()) {
+        if !changes.wait(&known, session.monitor()?) {
             return Ok(Exit::Interrupted);
         }
     }

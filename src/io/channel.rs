@@ -273,6 +273,10 @@ impl RowSource for HeightRows {
     fn last_row_is_near(&self) -> bool {
         self.samples.last_row_is_near()
     }
+
+    fn held_bytes(&self) -> u64 {
+        self.samples.held_bytes() + self.interleaved.bytes() + self.picked.bytes()
+    }
 }
 
 /// Picks the heights of one row.

@@ -12,6 +12,9 @@ pub(super) trait GroupDecoder: Send {
     /// Rows of a group; the last one may have fewer.
     fn group_rows(&self) -> usize;
 
+    /// Bytes that decoding holds at most beside the group.
+    fn held_bytes(&self) -> u64;
+
     /// Decodes the group `index`, from the top, into the first rows of `group`.
     fn decode(&mut self, index: usize, group: &mut Samples) -> Result<()>;
 }
@@ -70,5 +73,9 @@ impl<D: GroupDecoder> SampleRows for GroupedRows<D> {
 
     fn last_row_is_near(&self) -> bool {
         true
+    }
+
+    fn held_bytes(&self) -> u64 {
+        self.decoder.held_bytes() + self.group.bytes()
     }
 }

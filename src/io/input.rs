@@ -138,4 +138,8 @@ impl SampleRows for Watched {
     fn last_row_is_near(&self) -> bool {
         self.rows.last_row_is_near()
     }
+
+    fn held_bytes(&self) -> u64 {
+        self.rows.held_bytes()
+    }
 }

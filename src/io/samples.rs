@@ -29,6 +29,11 @@ pub(super) trait SampleRows: Send {
 
     /// Whether the last row is reached without decoding those before it.
     fn last_row_is_near(&self) -> bool;
+
+    /// Bytes that are held at most while rows are read.
+    fn held_bytes(&self) -> u64 {
+        self.layout().row_bytes() as u64
+    }
 }
 
 /// An opened file and what its header says.
@@ -63,10 +68,13 @@ pub(super) enum Samples {
     F32(Vec<f32>),
 }
 
-/// A file that is decoded whole.
+/// A file that is decoded whole when its first row is asked for: one that waits for its turn holds nothing.
 pub(super) struct DecodedWhole {
     layout: Layout,
-    samples: Samples,
+    /// Bytes that the decoder holds besides the samples.
+    beside: u64,
+    decode: Box<dyn FnMut() -> Result<Samples> + Send>,
+    samples: Option<Samples>,
     next_row: usize,
 }
 
@@ -112,6 +120,15 @@ impl Samples {
         }
     }
 
+    /// Bytes of all samples.
+    pub fn bytes(&self) -> u64 {
+        match self {
+            Self::U8(samples) => samples.len() as u64,
+            Self::U16(samples) => 2 * samples.len() as u64,
+            Self::F32(samples) => 4 * samples.len() as u64,
+        }
+    }
+
     pub fn as_ref(&self) -> Heights<'_> {
         match self {
             Self::U8(samples) => Heights::U8(samples),
@@ -130,8 +147,9 @@ impl Samples {
 }
 
 impl DecodedWhole {
-    pub fn new(layout: Layout, samples: Samples) -> Self {
-        Self { layout, samples, next_row: 0 }
+    /// The samples of `layout` that `decode` gives; it holds `beside` more bytes.
+    pub fn new(layout: Layout, beside: u64, decode: impl FnMut() -> Result<Samples> + Send + 'static) -> Self {
+        Self { layout, beside, decode: Box::new(decode), samples: None, next_row: 0 }
     }
 }
 
@@ -141,9 +159,13 @@ impl SampleRows for DecodedWhole {
     }
 
     fn read(&mut self, mut rows: HeightsMut<'_>) -> Result<()> {
-        let count = len(&rows);
-        let from = self.next_row * self.layout.per_row();
-        copy(part(self.samples.as_ref(), from..from + count), &mut rows);
+        let samples = match self.samples.take() {
+            Some(samples) => samples,
+            None => (self.decode)()?,
+        };
+        let (count, from) = (len(&rows), self.next_row * self.layout.per_row());
+        copy(part(samples.as_ref(), from..from + count), &mut rows);
+        self.samples = Some(samples);
         self.next_row += count / self.layout.per_row();
         Ok(())
     }
@@ -155,6 +177,10 @@ impl SampleRows for DecodedWhole {
 
     fn last_row_is_near(&self) -> bool {
         true
+    }
+
+    fn held_bytes(&self) -> u64 {
+        (self.layout.row_bytes() * self.layout.size.height()) as u64 + self.beside
     }
 }
 

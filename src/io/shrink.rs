@@ -123,6 +123,14 @@ impl RowSource for Shrunk {
     fn last_row_is_near(&self) -> bool {
         self.rows.last_row_is_near()
     }
+
+    fn held_bytes(&self) -> u64 {
+        let sums = match &self.sums {
+            Sums::Codes(sums) => size_of_val(sums.as_slice()),
+            Sums::Floats(sums) => size_of_val(sums.as_slice()),
+        };
+        self.rows.held_bytes() + self.row.bytes() + sums as u64
+    }
 }
 
 impl Shrunk {

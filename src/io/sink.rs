@@ -11,6 +11,9 @@ pub(super) trait RowEncoder: Send {
     /// Whether row 0 may come after all others.
     fn takes_first_row_last(&self) -> bool;
 
+    /// Bytes that are held at most while `rows` rows at once are written.
+    fn held_bytes(&self, rows: usize) -> u64;
+
     /// Writes whole rows from row `first` on, all of the depth that the file was created with.
     fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()>;
 
@@ -48,6 +51,10 @@ impl FileSink {
 }
 
 impl RowSink for FileSink {
+    fn held_bytes(&self, rows: usize) -> u64 {
+        self.encoder.as_ref().map_or(0, |encoder| encoder.held_bytes(rows))
+    }
+
     fn takes_first_row_last(&self) -> bool {
         self.encoder.as_ref().is_some_and(|encoder| encoder.takes_first_row_last())
     }
@@ -118,6 +125,10 @@ mod tests {
     impl RowEncoder for Deaf {
         fn takes_first_row_last(&self) -> bool {
             false
+        }
+
+        fn held_bytes(&self, _: usize) -> u64 {
+            0
         }
 
         fn write(&mut self, _: usize, rows: CodesRef<'_>) -> Result<()> {

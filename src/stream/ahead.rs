@@ -5,9 +5,6 @@ use super::thread;
 use crate::error::Result;
 use std::thread::{Builder, JoinHandle};
 
-/// Buffers in flight besides the one in use: one being read, one waiting.
-const BUFFERS: usize = 3;
-
 /// What a reading thread has filled, in its order.
 pub(super) struct ReadAhead<T> {
     /// `None` once nothing more is wanted.
@@ -22,7 +19,7 @@ impl<T: Send + 'static> ReadAhead<T> {
     /// # Errors
     /// [`crate::Error::Threads`].
     pub fn new(read_all: impl FnOnce(Filling<T>) -> Result<()> + Send + 'static) -> Result<Self> {
-        let (filled, filling) = recycling(BUFFERS);
+        let (filled, filling) = recycling();
         let thread = thread::start(Builder::new().name("texbake read".into()), || read_all(filling))?;
         Ok(Self { filled: Some(filled), current: None, thread: Some(thread) })
     }

@@ -6,6 +6,7 @@
 
 mod ahead;
 mod band;
+mod budget;
 mod channel;
 mod layers;
 mod memory;
@@ -19,6 +20,7 @@ mod thread;
 mod writer;
 
 pub(crate) use band::{Band, HeightBand, HeightBands};
+pub(crate) use channel::BUFFERS;
 pub(crate) use layers::{LayerBand, LayerBands, LayerReader, LayerSource, MapLayers};
 pub(crate) use memory::{MapBands, MapSink};
 pub use monitor::Monitor;
@@ -28,6 +30,8 @@ pub use normals::{NormalSource, read_normals};
 pub(crate) use order::RowOrder;
 pub(crate) use reader::{BandReader, read_map_watched};
 pub use reader::{RowSource, read_map};
+#[cfg(feature = "cli")]
+pub(crate) use thread::on_pool;
 pub(crate) use writer::{CodeSink, CodeWriter};
 pub use writer::{LevelSink, RowSink};
 

@@ -5,6 +5,7 @@ use super::band::{Band, HeightBand, HeightBands};
 use super::channel::Filling;
 use super::monitor::Monitor;
 use super::order::RowOrder;
+use super::thread;
 use crate::error::Result;
 use crate::map::{Edge, Grid, HeightMap, HeightType, HeightsMut, Size};
 
@@ -33,6 +34,12 @@ pub trait RowSource: Send {
     fn last_row_is_near(&self) -> bool {
         false
     }
+
+    /// Bytes that the source holds at most while it is read, without the rows that it gives: what it decodes at once,
+    /// and what it keeps to find its rows.
+    fn held_bytes(&self) -> u64 {
+        (self.size().width() * self.height_type().bytes()) as u64
+    }
 }
 
 /// The bands of a [`RowSource`]; a thread reads ahead.
@@ -52,7 +59,7 @@ impl BandReader {
             let mut cutter = BandCutter::new(source, edge, order)?;
             while let Some(buffer) = filling.take() {
                 let buffer = buffer.unwrap_or_else(|| cutter.buffer(band_rows));
-                match cutter.next(buffer, band_rows)? {
+                match thread::on_pool(|| cutter.next(buffer, band_rows))? {
                     Some(band) => filling.send(band),
                     None => break,
                 }

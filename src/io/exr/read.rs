@@ -180,6 +180,12 @@ impl GroupDecoder for ExrBlocks {
         self.block_rows
     }
 
+    /// A block, the bytes that it comes from and what its compression needs between them, and the table of blocks.
+    fn held_bytes(&self) -> u64 {
+        let block = self.block_width as u64 * self.block_rows as u64 * self.texel_bytes as u64;
+        3 * block + 8 * self.offsets.len() as u64
+    }
+
     fn decode(&mut self, index: usize, group: &mut Samples) -> Result<()> {
         let (width, height) = (self.layout.size.width(), self.layout.size.height());
         for column in 0..self.across {

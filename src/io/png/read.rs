@@ -34,12 +34,15 @@ pub(crate) fn open(path: &Path, max_bytes: u64) -> Result<Opened> {
     let profile_is_srgb = info.icc_profile.as_deref().is_some_and(srgb::is_named_by);
     let says_srgb = info.srgb.is_some() || profile_is_srgb;
     let opened = if info.interlaced {
-        let mut samples = Samples::zeroed(layout.depth, layout.per_row() * layout.size.height());
-        let mut whole = samples.as_mut();
-        reader.next_frame(bytes_mut(&mut whole)).map_err(reason(path))?;
-        reader.finish().map_err(reason(path))?;
-        to_native_order(whole);
-        Opened::new(DecodedWhole::new(layout, samples))
+        let path = path.to_owned();
+        Opened::new(DecodedWhole::new(layout, 0, move || {
+            let mut samples = Samples::zeroed(layout.depth, layout.per_row() * layout.size.height());
+            let mut whole = samples.as_mut();
+            reader.next_frame(bytes_mut(&mut whole)).map_err(reason(&path))?;
+            reader.finish().map_err(reason(&path))?;
+            to_native_order(whole);
+            Ok(samples)
+        }))
     } else {
         Opened::new(PngRows { path: path.into(), max_bytes, reader, layout, next_row: 0 })
     };

@@ -5,7 +5,7 @@
 //! room is left for them, and they are filled in whenever the row arrives. Row 1 is filtered without looking up. The
 //! file is the same whenever row 0 comes, and hardly larger.
 
-use super::zlib::{IdatStream, first_idat, stored_bytes};
+use super::zlib::{CHUNK_BYTES, IdatStream, first_idat, stored_bytes};
 use crate::error::{Error, Result};
 use crate::io::Compression;
 use crate::io::replace::{Output, Replacement};
@@ -99,6 +99,11 @@ fn bit_depth(path: &Path, format: TexelFormat) -> Result<BitDepth> {
 }
 
 impl RowEncoder for PngEncoder {
+    /// Four rows, and what is deflated of a chunk.
+    fn held_bytes(&self, _: usize) -> u64 {
+        (4 * self.row_bytes + 2 * CHUNK_BYTES) as u64
+    }
+
     fn takes_first_row_last(&self) -> bool {
         true
     }

@@ -10,7 +10,7 @@ use png::{EncodingError, Writer};
 use std::io;
 
 /// Deflated bytes that go to the file as one chunk.
-const CHUNK_BYTES: usize = 256 << 10;
+pub(super) const CHUNK_BYTES: usize = 256 << 10;
 
 /// A zlib stream's first bytes: deflate with a window of 32 KiB, fastest (RFC 1950).
 const ZLIB_HEADER: [u8; 2] = [0x78, 0x01];

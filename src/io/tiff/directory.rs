@@ -8,6 +8,9 @@ use std::path::Path;
 /// Bytes that the decoder takes for each value of an entry.
 const VALUE_BYTES: u64 = 32;
 
+/// Bytes that the decoder keeps for each strip or tile: its offset and its length.
+pub(super) const CHUNK_ENTRY_BYTES: u64 = 16;
+
 /// Bytes of a value of each type (TIFF 6.0, section 2, and BigTIFF); of one that is none of them, the least.
 const TYPE_BYTES: [u64; 19] = [1, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4, 1, 1, 8, 8, 8];
 
