@@ -16,7 +16,7 @@ fn reasons(jobs: &[Job], out: &std::path::Path) -> Vec<Freshness> {
 fn a_given_normal_map_is_an_input() {
     let folder = textures();
     folder.run(&["normal", "tex/a_height.png", "-o", "given.png", "-q"]).ends(0);
-    let parallax: PathBuf = folder.path("out/p.png");
+    let parallax: PathBuf = folder.path("out/p.tif");
     let job = |read: NormalReadOptions| Job {
         input: folder.path("tex/a_height.png"),
         outputs: Maps { normal: None, parallax: Some(parallax.clone()) },
