@@ -118,7 +118,7 @@ fn the_whole_folder_may_go_and_come_back() {
     let mut watch = Watch::spawn(&folder, &["--out", "out"]);
     watch.until_said("watching for changes", 1);
     fs::remove_dir_all(folder.path("tex")).unwrap();
-    watch.until_said("error: tex: ", 1);
+    watch.until_said("failed tex: No such file", 1);
     map(&folder, "tex/a_height.png", 3);
     watch.until_baked("out/a_normal.png", &expected(&folder, 3, "1"));
     map(&folder, "tex/a_height.png", 5);
