@@ -6,6 +6,8 @@ mod cli;
 mod containers;
 mod extremes;
 mod faults;
+#[cfg(feature = "cli")]
+mod fresh;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod inspect;

@@ -45,7 +45,8 @@ pub struct Round {
 }
 
 impl Session<'_> {
-    /// What an interrupt cancels; before it is first asked for, an interrupt ends the program.
+    /// What bounds the memory of all rounds, and what an interrupt cancels; before it is first asked for, an interrupt
+    /// ends the program.
     ///
     /// # Errors
     /// As [`Resources::monitor`](super::resources::Resources::monitor).
@@ -53,8 +54,8 @@ impl Session<'_> {
         if let Some(monitor) = self.monitor.get() {
             return Ok(monitor);
         }
-        let monitor = stopped_by_interrupts(self.arguments.resources.monitor()?);
-        Ok(self.monitor.get_or_init(|| monitor))
+        let monitor = self.arguments.resources.monitor()?;
+        Ok(self.monitor.get_or_init(|| stopped_by_interrupts(monitor)))
     }
 
     /// Bakes what is stale. The first of several rounds is forced, if that was asked for, and told in full.

@@ -240,13 +240,12 @@ pub fn file_table(jobs: &[Job], outcomes: &[Outcome], left_out: &[String]) -> St
     }
     let worked_on = files().filter(|(_, outcome)| FileResult::of(outcome) != FileResult::Fresh);
     let (mut baked, unbaked): (Vec<_>, Vec<_>) = worked_on.partition(|(_, outcome)| outcome.result.is_ok());
-    if baked.is_empty() && unbaked.is_empty() {
-        return format!("of {} files all fresh", jobs.len());
-    }
     baked.sort_by_key(|(_, outcome)| Reverse(outcome.time));
     baked.truncate(SLOWEST);
     let what = match (unbaked.len(), baked.len()) {
+        (0, 0) => return format!("of {} files all fresh", jobs.len()),
         (0, slowest) => format!("the {slowest} slowest"),
+        (unbaked, 0) => format!("{unbaked} not baked"),
         (unbaked, slowest) => format!("{unbaked} not baked, and the {slowest} slowest"),
     };
     format!("of {} files {what}:\n{}", jobs.len(), rows_of(unbaked.into_iter().chain(baked), &[]))

@@ -144,8 +144,9 @@ impl Known {
         let extension = path.extension();
         let is_image = extension.is_some_and(|it| INPUT_EXTENSIONS.iter().any(|known| it.eq_ignore_ascii_case(known)));
         let is_settings = name == SETTINGS_NAME || self.settings.as_ref() == Some(&place);
-        // What is gone without having had an extension may have been a folder.
-        is_image || is_settings || self.inputs.contains(&place) || extension.is_none() || path.is_dir()
+        // What is gone without having had an extension may have been a folder; a file without one may be a log of this.
+        let is_folder = path.is_dir() || (extension.is_none() && !path.exists());
+        is_image || is_settings || is_folder || self.inputs.contains(&place)
     }
 }
 

@@ -108,14 +108,14 @@ impl Record {
 
     fn add_text(&self, text: &str) -> io::Result<()> {
         let mut file = self.lock()?;
-        let start = match file.metadata()?.len() {
-            0 => HEADER,
-            _ if !has_header(&mut file)? => return Err(io::Error::other("another program replaced it")),
-            // What a killed process left of its line stays a line of its own.
-            _ if !ends_a_line(&mut file)? => "\n",
-            _ => "",
-        };
-        file.write_all((start.to_owned() + text).as_bytes())
+        let end = end_of_lines(&mut file)?;
+        if end > 0 && !has_header(&mut file)? {
+            return Err(io::Error::other("another program replaced it"));
+        }
+        // What a killed process left of its line goes.
+        file.set_len(end)?;
+        let header = if end == 0 { HEADER } else { "" };
+        file.write_all((header.to_owned() + text).as_bytes())
     }
 
     /// The file, made if there is none, to read and to add to; locked until it is closed.
@@ -141,10 +141,10 @@ impl Content {
         };
         for line in lines.split_inclusive(|byte| *byte == b'\n') {
             match serde_json::from_slice::<Line>(line) {
-                Ok(line) => content.insert(line),
-                Err(_) if line.ends_with(b"\n") => content.unreadable += 1,
                 // A kill came in between.
-                Err(_) => {}
+                _ if !line.ends_with(b"\n") => {}
+                Ok(line) => content.insert(line),
+                Err(_) => content.unreadable += 1,
             }
         }
         content
@@ -191,7 +191,7 @@ fn foreign(bytes: &[u8]) -> Option<&'static str> {
     }
     let first = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
     match serde_json::from_slice::<Other>(first) {
-        _ if bytes.is_empty() => None,
+        _ if HEADER.as_bytes().starts_with(bytes) => None,
         Ok(_) => Some("it is of another version of texbake"),
         Err(_) => Some("it is no record of texbake"),
     }
@@ -233,11 +233,20 @@ fn has_header(file: &mut File) -> io::Result<bool> {
     Ok(start == HEADER.as_bytes())
 }
 
-fn ends_a_line(file: &mut File) -> io::Result<bool> {
-    let mut last = [0];
-    file.seek(SeekFrom::End(-1))?;
-    file.read_exact(&mut last)?;
-    Ok(last == *b"\n")
+/// Where the last whole line ends.
+fn end_of_lines(file: &mut File) -> io::Result<u64> {
+    let length = file.seek(SeekFrom::End(0))?;
+    let mut last = [b'\n'];
+    if length > 0 {
+        file.seek(SeekFrom::End(-1))?;
+        file.read_exact(&mut last)?;
+    }
+    if last == *b"\n" {
+        return Ok(length);
+    }
+    file.seek(SeekFrom::Start(0))?;
+    let bytes = read_whole(file)?;
+    Ok(bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last as u64 + 1))
 }
 
 /// Whether an open file is still the one of this name.
