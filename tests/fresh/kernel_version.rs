@@ -121,6 +121,7 @@ fn a_changed_byte_is_a_new_version() {
                 input: input.clone(),
                 outputs: Maps { normal: output("normal"), parallax: output("parallax") },
                 normals: None,
+                neighbours: None,
                 read: ReadOptions { raw: Some(raw), ..ReadOptions::default() },
                 options,
                 write: WriteOptions::default(),
