@@ -3,8 +3,11 @@
 mod blend;
 #[cfg(feature = "cli")]
 mod cli;
+mod containers;
 mod extremes;
 mod faults;
+#[cfg(feature = "cli")]
+mod fresh;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod inspect;

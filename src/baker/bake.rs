@@ -1,14 +1,16 @@
 //! Height maps into normal and parallax maps.
 
+use super::memory::job_bytes;
 use super::write::{as_dyn, whole_sink, write_watched};
 use super::{Baker, Ran};
-use crate::backend::{Backend, RowBytes};
+use crate::backend::RowBytes;
 use crate::error::{Error, Result};
 use crate::exact::AxisScale;
 use crate::map::{CodesMut, Edge, HeightMap, HeightType, Maps, NormalMap, ParallaxMap, Size, TexelFormat};
+use crate::mips::bake_with_levels;
 use crate::ops::bake::{BakeOptions, BakePlan, NormalOptions, ParallaxOptions};
 use crate::stream::{
-    BandReader, CodeSink, HeightRows, MapBands, MapSink, Monitor, RowOrder, RowsOut, read_map_watched,
+    BandReader, HeightBands, HeightRows, MapBands, MapSink, Monitor, RowOrder, RowSource, RowsOut, read_map_watched,
 };
 
 /// How a bake ran.
@@ -135,6 +137,9 @@ impl Baker {
     /// no more than 64 MiB, else decoded twice. What the source itself holds comes on top:
     /// [`crate::io::open_heights`] decodes some formats whole.
     ///
+    /// Where a sink has [`levels`](crate::stream::RowSink::levels), the smaller mip levels of its map are baked too, as
+    /// [`Baker::bake_levels`] does.
+    ///
     /// `create` makes a sink for each map that the options ask for. Both may be called again if a GPU fails and the
     /// job moves to the CPU; no row of the failed try is kept.
     ///
@@ -149,19 +154,25 @@ impl Baker {
         monitor: &Monitor,
     ) -> Result<Baked> {
         let (ran, plan) = self.run(|backend| {
+            let turn = monitor.turn();
             let source = open()?;
             let plan = BakePlan::new(options, source.size(), source.height_type())?;
             let sinks = create(plan.size)?;
             check_maps(&plan, &sinks)?;
-            let sinks = sinks.into_vec();
+            let mut sinks = sinks.into_vec();
             let all_take_it_last = sinks.iter().all(|sink| sink.takes_first_row_last());
             let order = match (plan.edges.y, plan.size.height()) {
                 (Edge::Wrap, height) if height > 1 && all_take_it_last => RowOrder::FirstRowLast,
                 _ => RowOrder::FromTop,
             };
+            let held_map = if is_held(&plan, source.as_ref(), order) { plan.map_bytes() } else { 0 };
+            let passing = job_bytes(backend, RowBytes::of_bake(&plan), plan.size.height(), &sinks);
+            let _memory = turn.take(source.held_bytes() + held_map as u64 + passing, monitor)?;
             let formats: Vec<TexelFormat> = plan.outputs().collect();
+            let levels = sinks.iter_mut().map(|sink| sink.levels().map(|levels| levels as _)).collect();
             write_watched(sinks, &formats, plan.size, order, monitor, |sinks| {
-                stream(backend, &plan, source, order, monitor, sinks)
+                let bake = |bands: &mut dyn HeightBands| bake_with_levels(backend, &plan, order, bands, sinks, levels);
+                stream(source, &plan, order, backend.band_rows(RowBytes::of_bake(&plan)), monitor, bake)
             })?;
             Ok(plan)
         })?;
@@ -178,21 +189,24 @@ fn check_maps<T>(plan: &BakePlan, maps: &Maps<T>) -> Result<()> {
     Err(Error::parameter("maps", "others", "those that the options ask for"))
 }
 
-/// Sends the rows of a source through a backend into sinks.
-fn stream(
-    backend: &dyn Backend,
-    plan: &BakePlan,
-    mut source: HeightRows,
-    order: RowOrder,
-    monitor: &Monitor,
-    sinks: &mut [&mut dyn CodeSink],
-) -> Result<()> {
-    let band_rows = backend.band_rows(RowBytes::of_bake(plan));
+/// Whether the heights are held in memory, since their last row is needed first, and far.
+fn is_held(plan: &BakePlan, source: &dyn RowSource, order: RowOrder) -> bool {
     let needs_last_row_first = plan.edges.y == Edge::Wrap && order == RowOrder::FromTop;
-    let is_far = needs_last_row_first && !source.last_row_is_near();
-    if is_far && plan.size.texels() * plan.height_type.bytes() <= HELD_BYTES {
+    needs_last_row_first && !source.last_row_is_near() && plan.map_bytes() <= HELD_BYTES
+}
+
+/// Bakes the rows of a source, cut into bands.
+fn stream(
+    mut source: HeightRows,
+    plan: &BakePlan,
+    order: RowOrder,
+    band_rows: usize,
+    monitor: &Monitor,
+    bake: impl FnOnce(&mut dyn HeightBands) -> Result<()>,
+) -> Result<()> {
+    if is_held(plan, source.as_ref(), order) {
         let map = read_map_watched(source.as_mut(), monitor)?;
-        return backend.bake(plan, &mut MapBands::new(&map, plan.edges.y, band_rows), sinks);
+        return bake(&mut MapBands::new(&map, plan.edges.y, band_rows));
     }
-    backend.bake(plan, &mut BandReader::new(source, plan.edges.y, order, band_rows)?, sinks)
+    bake(&mut BandReader::new(source, plan.edges.y, order, band_rows)?)
 }

@@ -2,6 +2,8 @@
 
 mod bake;
 mod blend;
+mod levels;
+mod memory;
 mod parallax;
 mod tangents;
 mod write;

@@ -25,6 +25,7 @@
 
 mod blend;
 mod discovery;
+mod fresh;
 #[cfg(feature = "cli")]
 mod glob;
 mod heights;
@@ -42,6 +43,7 @@ mod targets;
 
 pub use blend::{BlendJob, BlendOutcome, BlendReport, FormatReport, LayerFacts, LayerReport, UsedWeights};
 pub use discovery::{Found, Search};
+pub use fresh::{Change, FreshPlan, Freshness, KERNEL_VERSION, Reason};
 #[cfg(feature = "cli")]
 pub use glob::FileGlob;
 pub use job::{Event, Job, run};

@@ -217,6 +217,13 @@ fn far_side(ends: Option<[Place; 2]>, step: i64) -> Option<Place> {
     ends.map(|[first, last]| if step < 0 { last } else { first })
 }
 
+impl fmt::Display for Neighbours {
+    /// The tiles around it in three rows, each from the left.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
 impl Neighbours {
     /// The edge modes for which they were found.
     pub(super) fn edges(&self) -> Edges {

@@ -30,7 +30,8 @@ struct Override {
     settings: PerFile,
 }
 
-const NAME: &str = "texbake.toml";
+/// What a settings file is called where none is named.
+pub const SETTINGS_NAME: &str = "texbake.toml";
 
 /// The most bytes of a settings file: thousands of overrides. One may lie in a folder that somebody else made.
 const MOST_BYTES: u64 = 1 << 20;
@@ -42,7 +43,8 @@ impl Config {
     /// [`Error::Io`], or [`Error::File`] with file and line.
     pub fn find(given: Option<&Path>, paths: &[PathBuf]) -> Result<Option<Self>> {
         let first_folder = paths.iter().find(|path| path.is_dir());
-        let usual = first_folder.map(|folder| folder.join(NAME)).into_iter().chain([PathBuf::from(NAME)]);
+        let usual =
+            first_folder.map(|folder| folder.join(SETTINGS_NAME)).into_iter().chain([PathBuf::from(SETTINGS_NAME)]);
         let path = given.map(Path::to_owned).or_else(|| usual.into_iter().find(|path| path.is_file()));
         let Some(path) = path else { return Ok(None) };
         let io = |source| Error::Io { path: path.clone(), source };
@@ -210,7 +212,7 @@ fn plain_text(value: &Spanned<DeValue<'_>>) -> Option<String> {
 
 /// The options of one file, without anything else.
 fn parser() -> Command {
-    let command = Command::new(NAME).no_binary_name(true).disable_help_flag(true).disable_version_flag(true);
+    let command = Command::new(SETTINGS_NAME).no_binary_name(true).disable_help_flag(true).disable_version_flag(true);
     PerFile::augment_args(command)
 }
 

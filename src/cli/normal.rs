@@ -10,8 +10,10 @@ use texbake::Maps;
 use texbake::batch::Job;
 
 pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
-    let settings = &arguments.settings;
-    let format = settings.normal.format(&arguments.output)?;
+    let (settings, resources) = (&arguments.settings, &arguments.resources);
+    resources.start_threads()?;
+    let write = settings.file.write();
+    let format = settings.normal.format(&arguments.output, &write)?;
     let options = settings.slope.bake(Some(format), None)?;
     let job = Job {
         input: arguments.input.clone(),
@@ -20,8 +22,9 @@ pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
         neighbours: settings.tiles.around(&arguments.input, &options)?,
         read: settings.input.read(),
         options,
-        write: settings.file.write(),
+        write,
         baker: Arc::new(open_baker(&settings.device.place()?)?),
     };
-    bake_one(job, &ParallaxTelling { iterations: USUAL_ITERATIONS, sidecar: None }, &arguments.reporting)
+    let telling = ParallaxTelling { iterations: USUAL_ITERATIONS, sidecar: None };
+    bake_one(job, &telling, resources, &arguments.reporting)
 }

@@ -5,6 +5,7 @@ use super::{ReadOptions, open_heights};
 use crate::error::{Error, Result};
 use crate::map::{Edges, HeightType, HeightsMut, Size};
 use crate::stream::{HeightRows, RowSource};
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// Where the texels beyond one side of a tile are.
@@ -67,6 +68,25 @@ struct End {
     /// The tile that has it, and room for a row of it; `None`: the column of the tile itself.
     beside: Option<(PathBuf, HeightRows, Samples)>,
     column: usize,
+}
+
+impl fmt::Display for Reach {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (&self.tile, self.overlap) {
+            (None, _) => f.write_str("edge"),
+            (Some(tile), 0) => write!(f, "{}", tile.display()),
+            (Some(tile), overlap) => write!(f, "{} overlapping by {overlap}", tile.display()),
+        }
+    }
+}
+
+impl fmt::Display for Halo {
+    /// Three rows of tiles, each from the left; `here` is the tile itself.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [over, own, under] = &self.rows;
+        let row = |TileRow { tile, ends: [left, right] }: &TileRow| format!("{left}, {tile}, {right}");
+        write!(f, "{}; {}, here, {}; {}", row(over), own.ends[0], own.ends[1], row(under))
+    }
 }
 
 impl HaloRows {

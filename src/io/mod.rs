@@ -34,6 +34,7 @@ mod shrink;
 mod sink;
 mod srgb;
 mod temporary;
+mod texture;
 mod tiff;
 mod write;
 
@@ -44,9 +45,10 @@ pub use gltf::{LeftOut, Model, ModelFile, ModelFiles, ModelReadOptions, ModelRep
 pub(crate) use halo::{Halo, HaloRows, Reach, TileRow};
 pub use parallax::ParallaxReadOptions;
 pub use raw::{RawKind, RawLayout};
+pub use texture::BlockCompression;
 pub use write::{
-    Compression, WriteOptions, check_normal_format, check_parallax_format, create_normals, create_normals_with,
-    create_parallax, create_parallax_with,
+    Compression, WriteOptions, check_normal_format, check_normals_with, check_parallax_format, check_parallax_with,
+    create_normals, create_normals_with, create_parallax, create_parallax_with,
 };
 
 use crate::error::Result;

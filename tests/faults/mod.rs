@@ -15,4 +15,4 @@ mod paused;
 #[cfg(all(feature = "cli", target_os = "linux"))]
 mod unheard;
 #[cfg(all(feature = "cli", unix))]
-mod watched;
+pub mod watched;

@@ -12,6 +12,7 @@ mod normal;
 mod obj;
 mod parallax;
 mod png;
+mod png_written;
 #[cfg(feature = "cli")]
 mod program;
 mod raster;
@@ -19,5 +20,5 @@ mod raw;
 mod replace;
 mod samples;
 mod shrink;
-mod support;
+pub mod support;
 mod tiff;

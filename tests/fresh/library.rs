@@ -1,0 +1,76 @@
+//! The same for programs that call the library.
+
+use super::support::textures;
+use std::path::PathBuf;
+use std::sync::Arc;
+use texbake::batch::{Event, FileResult, FreshPlan, Freshness, Job, NormalInput, Reason};
+use texbake::io::{NormalReadOptions, ReadOptions, WriteOptions};
+use texbake::stream::Monitor;
+use texbake::{BakeOptions, Baker, Channels, Maps, ParallaxFormat};
+
+fn reasons(jobs: &[Job], out: &std::path::Path) -> Vec<Freshness> {
+    FreshPlan::new(jobs, out, false, &Monitor::default()).files().collect()
+}
+
+#[test]
+fn a_given_normal_map_is_an_input() {
+    let folder = textures();
+    folder.run(&["normal", "tex/a_height.png", "-o", "given.png", "-q"]).ends(0);
+    let parallax: PathBuf = folder.path("out/p.tif");
+    let job = |read: NormalReadOptions| Job {
+        input: folder.path("tex/a_height.png"),
+        outputs: Maps { normal: None, parallax: Some(parallax.clone()) },
+        normals: Some(NormalInput { path: folder.path("given.png"), read }),
+        neighbours: None,
+        read: ReadOptions::default(),
+        options: BakeOptions { normal: None, parallax: Some(ParallaxFormat::default()), ..BakeOptions::default() },
+        write: WriteOptions::default(),
+        baker: Arc::new(Baker::reference()),
+    };
+    let (out, usual) = (folder.path("out"), [job(NormalReadOptions::default())]);
+    let monitor = Monitor::default();
+    let plan = FreshPlan::new(&usual, &out, false, &monitor);
+    assert_eq!(plan.files().collect::<Vec<_>>(), [Freshness::Stale(Reason::New)]);
+    let outcomes = plan.run(1, &monitor, &|_| ());
+    assert_eq!(FileResult::of(&outcomes[0]), FileResult::Baked, "{:?}", outcomes[0].result);
+    assert_eq!((plan.warnings(), reasons(&usual, &out)), (Vec::new(), vec![Freshness::Fresh]));
+
+    folder.run(&["normal", "tex/a_height.png", "-o", "given.png", "-q", "--scale", "9"]).ends(0);
+    assert_eq!(reasons(&usual, &out), [Freshness::Stale(Reason::Input(folder.path("given.png")))]);
+    FreshPlan::new(&usual, &out, false, &monitor).run(1, &monitor, &|_| ());
+    assert_eq!(reasons(&usual, &out), [Freshness::Fresh]);
+    // How it is read counts.
+    let xy = [job(NormalReadOptions { channels: Some(Channels::Xy), ..Default::default() })];
+    let text: Vec<String> = reasons(&xy, &out).iter().map(ToString::to_string).collect();
+    assert_eq!(text, ["normals found found gl -> found xy gl"]);
+}
+
+#[test]
+fn events_and_outcomes_have_the_places_of_all_jobs() {
+    let folder = textures();
+    let job = |name: &str| Job {
+        input: folder.path(&format!("tex/{name}_height.png")),
+        outputs: Maps { normal: Some(folder.path(&format!("out/{name}.png"))), parallax: None },
+        normals: None,
+        neighbours: None,
+        read: ReadOptions::default(),
+        options: BakeOptions::default(),
+        write: WriteOptions::default(),
+        baker: Arc::new(Baker::reference()),
+    };
+    let (out, monitor) = (folder.path("out"), Monitor::default());
+    let first = [job("a")];
+    FreshPlan::new(&first, &out, false, &monitor).run(1, &monitor, &|_| ());
+    let jobs = [job("gone"), job("a"), job("b"), job("sub/c")];
+    let ended = std::sync::Mutex::new(Vec::new());
+    let outcomes = FreshPlan::new(&jobs, &out, false, &monitor).run(1, &monitor, &|event| {
+        if let Event::Ended { job, outcome } = event {
+            ended.lock().unwrap().push((job, FileResult::of(outcome)));
+        }
+    });
+    use FileResult::{Baked, Failed, Fresh};
+    assert_eq!(ended.into_inner().unwrap(), [(1, Fresh), (0, Failed), (2, Baked), (3, Baked)]);
+    let results: Vec<FileResult> = outcomes.iter().map(FileResult::of).collect();
+    assert_eq!(results, [Failed, Fresh, Baked, Baked]);
+    assert_eq!(outcomes[1].result.as_ref().unwrap().size.to_string(), "9 x 8");
+}
