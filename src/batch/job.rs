@@ -165,6 +165,13 @@ impl Job {
                 format!("{}, as for its neighbours", neighbours.edges()),
             ));
         }
+        if self.write.mips {
+            return Err(Error::parameter(
+                "mips",
+                "on",
+                "left out with --neighbours, whose halo is for the largest level",
+            ));
+        }
         let size = open()?.size();
         let whole = Size::new(size.width() + 2, size.height() + 2)?;
         let options =
