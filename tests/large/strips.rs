@@ -172,7 +172,7 @@ fn what_is_cut_off_is_missed() {
     for compression in [1, 5, 8] {
         let mut file = tiff(&samples, (16, 1), 1, HEIGHT, [compression, 1]);
         let length = file.chunks[0].len();
-        file.chunks[0].truncate(length - 3);
+        file.chunks[0].truncate(length - length / 8);
         std::fs::write(&path, file.bytes()).unwrap();
         let error = HeightMap::read(&path).map(drop).unwrap_err().to_string();
         assert!(error.contains("cut.tif: the file ends before its last row"), "{compression}: {error}");
