@@ -222,17 +222,17 @@ fn a_row_that_is_longer_than_a_stripe_comes_back() {
 
 #[test]
 fn the_bytes_depend_on_neither_threads_nor_bands_nor_the_first_rows_turn() {
-    let waves = Picture::waves([500, 900], 3, Depth::Bits8, 0.6, 3);
-    for compression in LEVELS {
+    let waves = Picture::waves([500, 700], 3, Depth::Bits8, 0.6, 3);
+    for compression in [Compression::Fast, Compression::Small] {
         let expected = waves.file(compression);
         for threads in [1, 8] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             assert!(pool.install(|| waves.file(compression)) == expected, "{compression:?}, {threads} threads");
         }
-        for rows in [7, 349, 350, 900] {
+        for rows in [7, 350, 700] {
             assert!(waves.file_in_bands(compression, rows) == expected, "{compression:?}, bands of {rows}");
         }
-        let last = (1..900).chain([0]);
+        let last = (1..700).chain([0]);
         assert!(waves.file_in_order(compression, last) == expected, "{compression:?}, row 0 last");
     }
 }
