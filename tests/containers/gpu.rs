@@ -2,8 +2,8 @@
 //!
 //! What a device's float is off by: nothing for floats; for normalised codes c of at most 16 bits the roundings of c / L
 //! to f32, of which ten steps of 2^-24 would be 1/25 of a code: 1/20 is allowed. Of BC4 and BC5 blocks the interpolation's
-//! precision is the device's own: half a step of the block's range over 7, and up to a code beside it, since lavapipe
-//! interpolates in whole numbers and rounds towards zero. What BC7 blocks decode to is defined to the bit.
+//! precision is the device's own: half a step of the block's range over 7, and a code beside it, since lavapipe
+//! interpolates in whole numbers, besides the same roundings. What BC7 blocks decode to is defined to the bit.
 
 use super::made::{KINDS, Kind, Level, Made, bc7};
 use super::parsed::by_specification;
@@ -230,7 +230,7 @@ fn excess(kind: &Kind, level: &Level, texels: &[[f32; 4]]) -> f64 {
                         let codes: Vec<f64> = block.map(|(x, y)| code(x, y, channel).0).collect();
                         let range = codes.iter().fold(f64::MIN, |a, b| a.max(*b))
                             - codes.iter().fold(f64::MAX, |a, b| a.min(*b));
-                        range / 14.0 + 1.0
+                        range / 14.0 + 1.0 + 1.0 / 20.0
                     }
                     (None, Float) => 0.0,
                     _ => 1.0 / 20.0,
