@@ -220,9 +220,9 @@ fn excess(kind: &Kind, level: &Level, texels: &[[f32; 4]]) -> f64 {
     let mut greatest = f64::MIN;
     for y in 0..level.height {
         for x in 0..level.width {
-            for channel in 0..kept {
+            for (channel, value) in texels[y * level.width + x].iter().enumerate().take(kept) {
                 let (expected, one) = code(x, y, channel);
-                let error = (f64::from(texels[y * level.width + x][channel]) * one - expected).abs();
+                let error = (f64::from(*value) * one - expected).abs();
                 let allowed = match (kind.blocks, kind.encoding) {
                     (Some(_), _) => {
                         let block = (y / 4 * 4..(y / 4 * 4 + 4).min(level.height))
