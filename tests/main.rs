@@ -12,6 +12,7 @@ mod io;
 mod material;
 mod materials;
 mod measure;
+mod mips;
 mod normal;
 mod oracle;
 mod parallax;

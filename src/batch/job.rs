@@ -150,7 +150,7 @@ impl Job {
         opened: &dyn Fn(Size),
         warnings: &mut Vec<String>,
     ) -> Result<Baked> {
-        let (Maps { normal: None, parallax: Some(_) }, Some(format), None) =
+        let (Maps { normal: None, parallax: Some(_), roughness: None }, Some(format), None) =
             (&self.outputs, self.options.parallax, self.options.normal)
         else {
             return Err(Error::parameter("maps", "other maps", "parallax alone, where a normal map is given"));
@@ -188,7 +188,7 @@ impl Job {
     /// A sink for each output.
     fn create(&self, size: Size) -> Result<Maps<RowsOut>> {
         self.outputs.iter().try_for_each(|path| create_folder_of(path))?;
-        let Maps { normal, parallax } = &self.outputs;
+        let Maps { normal, parallax, .. } = &self.outputs;
         let normal = normal.as_ref().zip(self.options.normal);
         let parallax = parallax.as_ref().zip(self.options.parallax);
         Ok(Maps {
@@ -196,6 +196,7 @@ impl Job {
             parallax: parallax
                 .map(|(path, format)| create_parallax_with(path, size, format, &self.write))
                 .transpose()?,
+            roughness: None,
         })
     }
 }
@@ -222,7 +223,7 @@ mod tests {
         let given = NormalInput { path: "given.png".into(), read: NormalReadOptions::default() };
         let job = Job {
             input: "h.png".into(),
-            outputs: Maps { normal: Some("n.png".into()), parallax: None },
+            outputs: Maps { normal: Some("n.png".into()), parallax: None, roughness: None },
             normals: Some(given),
             read: ReadOptions::default(),
             options: BakeOptions::default(),

@@ -354,7 +354,7 @@ impl FileReport {
 
 impl Options {
     fn new(job: &Job, iterations: NonZeroU32) -> Self {
-        let BakeOptions { scale, filter, edges, normal, parallax, precision } = job.options;
+        let BakeOptions { scale, filter, edges, normal, parallax, precision, .. } = job.options;
         let read = &job.read;
         let maps = [normal.map(|_| MapKind::Normal), parallax.map(|_| MapKind::Parallax)];
         let maps: Vec<String> = maps.into_iter().flatten().map(|kind| kind.to_string()).collect();

@@ -15,7 +15,7 @@ pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
     let options = settings.slope.bake(Some(format), None)?;
     let job = Job {
         input: arguments.input.clone(),
-        outputs: Maps { normal: Some(arguments.output.clone()), parallax: None },
+        outputs: Maps { normal: Some(arguments.output.clone()), parallax: None, roughness: None },
         normals: None,
         read: settings.input.read(),
         options,

@@ -13,7 +13,7 @@ pub fn parallax(arguments: &ParallaxArguments) -> Result<Exit, Failure> {
     let options = arguments.slope.bake(None, Some(arguments.codes().parallax(&arguments.output)?))?;
     let job = Job {
         input: arguments.input.clone(),
-        outputs: Maps { normal: None, parallax: Some(arguments.output.clone()) },
+        outputs: Maps { parallax: Some(arguments.output.clone()), ..Maps::default() },
         normals: given_normals(arguments),
         read: arguments.heights.read(),
         options,

@@ -108,7 +108,7 @@ fn neither_map_gets_its_name_unless_both_are_complete() {
 fn sinks_must_be_those_of_the_maps() {
     let map = heights();
     let open = || Ok(Box::new(MemorySource::new(map.clone())) as HeightRows);
-    let create = |_: Size| Ok(Maps { normal: None, parallax: None });
+    let create = |_: Size| Ok(Maps::default());
     let error = Baker::cpu().bake_rows(&open, &create, &both(), &Monitor::default()).expect_err("no sinks");
     assert_eq!(error.to_string(), "maps is others: it must be those that the options ask for");
 }
