@@ -3,6 +3,7 @@
 mod closed_forms;
 mod floats;
 mod integers;
+mod roughness;
 mod rows;
 
 use crate::support::{Format, Image, differences};

@@ -61,6 +61,7 @@ fn bake(spoil: impl Fn(&mut Sink, &str)) -> (Result<()>, usize, [Vec<u8>; 2]) {
         Ok(Maps {
             normal: sink("normal", 3 * size.width(), &bytes[0]),
             parallax: sink("parallax", size.width(), &bytes[1]),
+            roughness: None,
         })
     };
     let result = Baker::cpu().bake_rows(&open, &create, &both(), &Monitor::default()).map(drop);
