@@ -158,6 +158,10 @@ impl Job {
         options: &BakeOptions,
         monitor: &Monitor,
     ) -> Result<Baked> {
+        if self.write.mips || options.roughness.is_some() {
+            let range = "left out of tiles with neighbours: levels are made of whole maps";
+            return Err(Error::parameter("mips", "given", range));
+        }
         if neighbours.edges() != options.edges {
             return Err(Error::parameter(
                 "edge",
@@ -172,10 +176,10 @@ impl Job {
         let open = || Ok(Box::new(neighbours.around(&self.input, open()?, &self.read)?) as HeightRows);
         let cropped = |(sink, format)| Box::new(Cropped::new(sink, size, format)) as RowsOut;
         let create = |_| {
-            let Maps { normal, parallax } = self.create(size)?;
+            let Maps { normal, parallax, .. } = self.create(size)?;
             let normal = normal.zip(options.normal.map(|format| format.texel())).map(cropped);
             let parallax = parallax.zip(options.parallax.map(|format| format.texel())).map(cropped);
-            Ok(Maps { normal, parallax })
+            Ok(Maps { normal, parallax, roughness: None })
         };
         let baked = self.baker.bake_rows(&open, &create, &options, monitor)?;
         Ok(Baked { size, ..baked })
@@ -188,7 +192,7 @@ impl Job {
         opened: &dyn Fn(Size),
         warnings: &mut Vec<String>,
     ) -> Result<Baked> {
-        let (Maps { normal: None, parallax: Some(_) }, Some(format), None) =
+        let (Maps { normal: None, parallax: Some(_), roughness: None }, Some(format), None) =
             (&self.outputs, self.options.parallax, self.options.normal)
         else {
             return Err(Error::parameter("maps", "other maps", "parallax alone, where a normal map is given"));
@@ -229,7 +233,7 @@ impl Job {
     /// A sink for each output.
     fn create(&self, size: Size) -> Result<Maps<RowsOut>> {
         self.outputs.iter().try_for_each(|path| create_folder_of(path))?;
-        let Maps { normal, parallax } = &self.outputs;
+        let Maps { normal, parallax, .. } = &self.outputs;
         let normal = normal.as_ref().zip(self.options.normal);
         let parallax = parallax.as_ref().zip(self.options.parallax);
         Ok(Maps {
@@ -237,6 +241,7 @@ impl Job {
             parallax: parallax
                 .map(|(path, format)| create_parallax_with(path, size, format, &self.write))
                 .transpose()?,
+            roughness: None,
         })
     }
 }
@@ -263,7 +268,7 @@ mod tests {
         let given = NormalInput { path: "given.png".into(), read: NormalReadOptions::default() };
         let job = Job {
             input: "h.png".into(),
-            outputs: Maps { normal: Some("n.png".into()), parallax: None },
+            outputs: Maps { normal: Some("n.png".into()), parallax: None, roughness: None },
             normals: Some(given),
             neighbours: None,
             read: ReadOptions::default(),

@@ -96,7 +96,7 @@ impl NameTemplate {
                              as {stem}_{map}{size}";
                 Err(Error::parameter("name", self, range))
             }
-            (normal, parallax) => Ok(Maps { normal, parallax }),
+            (normal, parallax) => Ok(Maps { normal, parallax, roughness: None }),
         }
     }
 

@@ -182,6 +182,8 @@ pub struct Options {
     pub mips: bool,
     /// The blocks of texels, if any.
     pub block_compression: Option<String>,
+    /// How the roughness of the mip levels is found, if it is.
+    pub roughness: Option<String>,
     /// The tiles around the input, if it is one of a larger map.
     pub neighbours: Option<String>,
     /// The channel that was read.
@@ -373,7 +375,7 @@ impl FileReport {
 impl Options {
     pub(super) fn new(job: &Job, iterations: NonZeroU32) -> Self {
         // All fields by name, so that none can be forgotten: what stands here decides what is baked again.
-        let BakeOptions { scale, filter, edges, normal, parallax, precision } = job.options;
+        let BakeOptions { scale, filter, edges, normal, parallax, roughness, precision } = job.options;
         let ReadOptions { channel, color_space, raw, shrink, max_bytes } = &job.read;
         let WriteOptions { compression, mips, blocks } = job.write;
         let maps = [normal.map(|_| MapKind::Normal), parallax.map(|_| MapKind::Parallax)];
@@ -394,6 +396,7 @@ impl Options {
             compression: compression.to_string(),
             mips,
             block_compression: blocks.map(|blocks| blocks.to_string()),
+            roughness: roughness.map(|options| format!("{options:?}")),
             neighbours: job.neighbours.as_ref().map(ToString::to_string),
             channel: channel.as_ref().map(ToString::to_string),
             color_space: color_space.to_string(),

@@ -17,7 +17,7 @@ pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
     let options = settings.slope.bake(Some(format), None)?;
     let job = Job {
         input: arguments.input.clone(),
-        outputs: Maps { normal: Some(arguments.output.clone()), parallax: None },
+        outputs: Maps { normal: Some(arguments.output.clone()), parallax: None, roughness: None },
         normals: None,
         neighbours: settings.tiles.around(&arguments.input, &options)?,
         read: settings.input.read(),

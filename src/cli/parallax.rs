@@ -16,7 +16,7 @@ pub fn parallax(arguments: &ParallaxArguments) -> Result<Exit, Failure> {
     let options = arguments.slope.bake(None, Some(format))?;
     let job = Job {
         input: arguments.input.clone(),
-        outputs: Maps { normal: None, parallax: Some(arguments.output.clone()) },
+        outputs: Maps { parallax: Some(arguments.output.clone()), ..Maps::default() },
         normals: given_normals(arguments),
         neighbours: arguments.tiles.around(&arguments.input, &options)?,
         read: arguments.heights.read(),
