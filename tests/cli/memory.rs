@@ -2,30 +2,14 @@
 
 #![cfg(target_os = "linux")]
 
-use super::support::{Folder, png};
-use std::process::{Child, Stdio};
-use std::time::Duration;
+use super::support::{Folder, peak_bytes, png};
+use std::process::Stdio;
 
 const WIDTH: usize = 1024;
 const HEIGHTS: [usize; 2] = [2048, 8 * 2048];
 
 /// Less than the heights of the taller map (16 MiB of bytes), more than what threads and buffers differ by.
 const MOST_GROWTH: u64 = 8 << 20;
-
-/// The most memory that a child was seen to hold: its own record, read until it ends.
-fn peak_bytes(child: &mut Child) -> u64 {
-    let status = format!("/proc/{}/status", child.id());
-    let mut peak = 0;
-    while child.try_wait().unwrap().is_none() {
-        let text = std::fs::read_to_string(&status).unwrap_or_default();
-        let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-        let kibibytes = line.and_then(|line| line.trim().strip_suffix(" kB")?.parse::<u64>().ok());
-        peak = peak.max(kibibytes.unwrap_or(0) << 10);
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    assert!(child.wait().unwrap().success());
-    peak
-}
 
 fn assert_does_not_grow(folder: &Folder, input: impl Fn(usize) -> (String, Vec<String>), output: &str) {
     assert_peaks_are_alike(folder, |height| {

@@ -1,7 +1,11 @@
 //! Folders of height maps, the program, and what it must produce.
 
 use std::path::{Path, PathBuf};
+#[cfg(target_os = "linux")]
+use std::process::Child;
 use std::process::{Command, Output};
+#[cfg(target_os = "linux")]
+use std::time::Duration;
 use tempfile::TempDir;
 use texbake::{Baker, Codes, CodesRef, Grid, HeightMap, NormalMap, NormalOptions, ParallaxOptions};
 
@@ -133,6 +137,34 @@ impl Run {
             assert!(line.contains(part), "{part:?} is not in: {line}");
         }
     }
+}
+
+/// The most memory that a child was seen to hold, which must succeed: its own record, read until it ends.
+#[cfg(target_os = "linux")]
+pub fn peak_bytes(child: &mut Child) -> u64 {
+    let status = format!("/proc/{}/status", child.id());
+    let mut peak = 0;
+    while child.try_wait().unwrap().is_none() {
+        let text = std::fs::read_to_string(&status).unwrap_or_default();
+        let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let kibibytes = line.and_then(|line| line.trim().strip_suffix(" kB")?.parse::<u64>().ok());
+        peak = peak.max(kibibytes.unwrap_or(0) << 10);
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    assert!(child.wait().unwrap().success());
+    peak
+}
+
+/// The program, to be run in `folder` with no more than this address space: its code, its threads' stacks and its
+/// allocator's arena, and what it allocates.
+#[cfg(target_os = "linux")]
+pub fn limited(folder: &Path, kibibytes: u64, arguments: &[&str]) -> Command {
+    let mut command = Command::new("sh");
+    command.args(["-c", &format!("ulimit -v {kibibytes} && exec \"$0\" \"$@\""), env!("CARGO_BIN_EXE_texbake")]);
+    command.args(arguments).current_dir(folder);
+    // Each thread's arena would reserve 64 MiB of addresses, and each thread of a machine with many cores a stack.
+    command.env("MALLOC_ARENA_MAX", "1").env("RAYON_NUM_THREADS", "2");
+    command
 }
 
 /// The bytes of a PNG; 16-bit samples have the most significant byte first.

@@ -7,6 +7,7 @@ use super::gltf::builder::{Builder, POSITIONS, TRIANGLES, U16, glb};
 use super::hand_made_png::{of_chunks, stored};
 use super::hand_made_tiff::Tiff;
 use super::support::Folder;
+use crate::cli::support::limited;
 use ::exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, FlatSamples, Image, Layer, LayerAttributes, LineOrder, Vec2,
     WritableImage,
@@ -14,9 +15,8 @@ use ::exr::prelude::{
 use serde_json::json;
 use std::fmt::Write;
 use std::io::Write as _;
-use std::process::Command;
 
-/// The address space of the program: its code, its threads' stacks and its allocator's arena, and what it allocates.
+/// The address space of the program.
 const LIMIT_KIB: u64 = 768 << 10;
 
 /// What the program is told to hold at most: 64 MiB.
@@ -30,12 +30,7 @@ struct Run {
 
 /// Runs the program in a folder, within the limits.
 fn run(folder: &Folder, arguments: &[&str]) -> Run {
-    let mut command = Command::new("sh");
-    command.args(["-c", &format!("ulimit -v {LIMIT_KIB} && exec \"$0\" \"$@\""), env!("CARGO_BIN_EXE_texbake")]);
-    command.args(arguments).current_dir(folder.path(""));
-    // Each thread's arena would reserve 64 MiB of addresses, and each thread of a machine with many cores a stack.
-    command.env("MALLOC_ARENA_MAX", "1").env("RAYON_NUM_THREADS", "2");
-    let output = command.output().unwrap();
+    let output = limited(&folder.path(""), LIMIT_KIB, arguments).output().unwrap();
     Run { status: output.status.code(), stderr: String::from_utf8(output.stderr).unwrap() }
 }
 
@@ -143,7 +138,9 @@ fn sorted<const N: usize>(mut names: [&str; N]) -> [&str; N] {
 #[test]
 fn tiff() {
     let hollow = Tiff::grey(60_000, 60_000, 16, 1, vec![vec![1; 4]]);
-    assert_map_refused("strip.tif", &hollow.bytes(), "raise it with --max-bytes");
+    assert_map_refused("strip.tif", &hollow.bytes(), "it is truncated");
+    let packed = Tiff { compression: 32_773, ..hollow.clone() };
+    assert_map_refused("bits.tif", &packed.bytes(), "raise it with --max-bytes");
     let tile = Tiff { tile: Some((1 << 30, 1 << 30)), ..Tiff::grey(16, 16, 8, 1, vec![vec![0; 16]]) };
     assert_map_refused("tile.tif", &tile.bytes(), "");
     let greatest = Tiff { width: u32::MAX, height: u32::MAX, rows_per_strip: 1, ..hollow.clone() };

@@ -259,15 +259,17 @@ fn a_hole_has_the_borders_of_a_map() {
         let found = normals(&mosaic.output([0, 0], "normal", "png"), Encoding::Unorm);
         assert!(found.codes().bytes() == expected, "{edge}");
     }
-    // A map that wraps goes on with the last tile of the row of tiles.
+    // A map that wraps goes on at the far side of its row of tiles: to the left the last tile is there, to the right the
+    // first one, which is the tile itself.
     let options = normal_only();
     let job = mosaic.job([0, 0], &options, &mosaic.read(), "png");
     run(&[job], 1, &Monitor::default(), &|_| ()).remove(0).result.unwrap();
     let Heights::U8(all) = mosaic.whole.heights() else { unreachable!() };
     let width = mosaic.whole.size().width();
-    let joined = map_u8(2 * TILE[0], 2 * TILE[1], |x, y| all[y * width + if x < TILE[0] { x } else { x + TILE[0] }]);
+    let joined =
+        map_u8(3 * TILE[0], 2 * TILE[1], |x, y| all[y * width + [2, 0, 0][x / TILE[0]] * TILE[0] + x % TILE[0]]);
     let expected = Baker::cpu().bake(&joined, &options).unwrap().normal.unwrap();
-    let expected = cut_codes(expected.codes(), [2 * TILE[0], 2 * TILE[1]], [0, 0], TILE);
+    let expected = cut_codes(expected.codes(), [3 * TILE[0], 2 * TILE[1]], [TILE[0], 0], TILE);
     assert!(normals(&mosaic.output([0, 0], "normal", "png"), Encoding::Unorm).codes().bytes() == expected, "wrap");
 }
 

@@ -8,7 +8,8 @@ use texbake::io::{Channel, ReadOptions, open_heights};
 use texbake::{HeightMap, HeightsMut};
 
 const WIDTH: usize = 523;
-/// With samples of one byte, more than the MiB up to which a strip is decoded at once.
+/// Two thirds of the rows, with samples of two bytes, and all of them, with one byte, are more than the MiB up to which a
+/// strip is decoded at once.
 const HEIGHT: usize = 2011;
 
 /// Bits and sample format: 1 unsigned, 2 signed, 3 float.
@@ -125,7 +126,7 @@ fn every_type_compression_and_predictor() {
         for compression in [1, 5, 8] {
             // The floating-point predictor is for floats.
             for predictor in 1..=if kind == 3 { 3 } else { 2 } {
-                for rows in [HEIGHT, HEIGHT - 1, HEIGHT * 2 / 3] {
+                for rows in [HEIGHT, HEIGHT * 2 / 3] {
                     let what = format!(
                         "{bits} bits, format {kind}, compression {compression}, predictor {predictor}, strips of {rows}"
                     );
@@ -175,9 +176,5 @@ fn what_is_cut_off_is_missed() {
         std::fs::write(&path, file.bytes()).unwrap();
         let error = HeightMap::read(&path).map(drop).unwrap_err().to_string();
         assert!(error.contains("cut.tif: the file ends before its last row"), "{compression}: {error}");
-        // The first strip of a damaged file is another one's bytes.
-        file.chunks[0][length / 2..][..1000].fill(0x55);
-        std::fs::write(&path, file.bytes()).unwrap();
-        assert!(HeightMap::read(&path).is_err(), "{compression}");
     }
 }

@@ -89,7 +89,7 @@ impl Strips {
         let stored: u64 = self.places.iter().map(|[_, length]| *length).fold(0, u64::saturating_add);
         let claimed = self.row_bytes() as u128 * size.height() as u128 * self.planes as u128;
         match self.compression {
-            CompressionMethod::None if claimed > file_bytes.into() => Err(truncated(path)),
+            CompressionMethod::None if claimed > stored.min(file_bytes).into() => Err(truncated(path)),
             CompressionMethod::Deflate | CompressionMethod::OldDeflate => {
                 limits::check_deflated(path, size, claimed, stored.min(file_bytes))
             }
