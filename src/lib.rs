@@ -139,6 +139,7 @@ mod map;
 pub mod material;
 pub mod measure;
 mod mesh;
+mod mips;
 mod names;
 mod ops;
 #[cfg(feature = "cli")]

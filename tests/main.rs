@@ -3,6 +3,7 @@
 mod blend;
 #[cfg(feature = "cli")]
 mod cli;
+mod containers;
 mod extremes;
 mod faults;
 #[cfg(feature = "cli")]
@@ -11,6 +12,7 @@ mod fresh;
 mod gpu;
 mod inspect;
 mod io;
+mod large;
 mod material;
 mod materials;
 mod measure;

@@ -3,13 +3,14 @@
 use super::memory::job_bytes;
 use super::write::{as_dyn, whole_sink, write_watched};
 use super::{Baker, Ran};
-use crate::backend::{Backend, RowBytes};
+use crate::backend::RowBytes;
 use crate::error::{Error, Result};
 use crate::exact::AxisScale;
 use crate::map::{CodesMut, Edge, HeightMap, HeightType, Maps, NormalMap, ParallaxMap, Size, TexelFormat};
+use crate::mips::bake_with_levels;
 use crate::ops::bake::{BakeOptions, BakePlan, NormalOptions, ParallaxOptions};
 use crate::stream::{
-    BandReader, CodeSink, HeightRows, MapBands, MapSink, Monitor, RowOrder, RowSource, RowsOut, read_map_watched,
+    BandReader, HeightBands, HeightRows, MapBands, MapSink, Monitor, RowOrder, RowSource, RowsOut, read_map_watched,
 };
 
 /// How a bake ran.
@@ -136,6 +137,9 @@ impl Baker {
     /// no more than 64 MiB, else decoded twice. What the source itself holds comes on top:
     /// [`crate::io::open_heights`] decodes some formats whole.
     ///
+    /// Where a sink has [`levels`](crate::stream::RowSink::levels), the smaller mip levels of its map are baked too, as
+    /// [`Baker::bake_levels`] does.
+    ///
     /// `create` makes a sink for each map that the options ask for. Both may be called again if a GPU fails and the
     /// job moves to the CPU; no row of the failed try is kept.
     ///
@@ -155,7 +159,7 @@ impl Baker {
             let plan = BakePlan::new(options, source.size(), source.height_type())?;
             let sinks = create(plan.size)?;
             check_maps(&plan, &sinks)?;
-            let sinks = sinks.into_vec();
+            let mut sinks = sinks.into_vec();
             let all_take_it_last = sinks.iter().all(|sink| sink.takes_first_row_last());
             let order = match (plan.edges.y, plan.size.height()) {
                 (Edge::Wrap, height) if height > 1 && all_take_it_last => RowOrder::FirstRowLast,
@@ -165,8 +169,10 @@ impl Baker {
             let passing = job_bytes(backend, RowBytes::of_bake(&plan), plan.size.height(), &sinks);
             let _memory = turn.take(source.held_bytes() + held_map as u64 + passing, monitor)?;
             let formats: Vec<TexelFormat> = plan.outputs().collect();
+            let levels = sinks.iter_mut().map(|sink| sink.levels().map(|levels| levels as _)).collect();
             write_watched(sinks, &formats, plan.size, order, monitor, |sinks| {
-                stream(backend, &plan, source, order, monitor, sinks)
+                let bake = |bands: &mut dyn HeightBands| bake_with_levels(backend, &plan, order, bands, sinks, levels);
+                stream(source, &plan, order, backend.band_rows(RowBytes::of_bake(&plan)), monitor, bake)
             })?;
             Ok(plan)
         })?;
@@ -189,19 +195,18 @@ fn is_held(plan: &BakePlan, source: &dyn RowSource, order: RowOrder) -> bool {
     needs_last_row_first && !source.last_row_is_near() && plan.map_bytes() <= HELD_BYTES
 }
 
-/// Sends the rows of a source through a backend into sinks.
+/// Bakes the rows of a source, cut into bands.
 fn stream(
-    backend: &dyn Backend,
-    plan: &BakePlan,
     mut source: HeightRows,
+    plan: &BakePlan,
     order: RowOrder,
+    band_rows: usize,
     monitor: &Monitor,
-    sinks: &mut [&mut dyn CodeSink],
+    bake: impl FnOnce(&mut dyn HeightBands) -> Result<()>,
 ) -> Result<()> {
-    let band_rows = backend.band_rows(RowBytes::of_bake(plan));
     if is_held(plan, source.as_ref(), order) {
         let map = read_map_watched(source.as_mut(), monitor)?;
-        return backend.bake(plan, &mut MapBands::new(&map, plan.edges.y, band_rows), sinks);
+        return bake(&mut MapBands::new(&map, plan.edges.y, band_rows));
     }
-    backend.bake(plan, &mut BandReader::new(source, plan.edges.y, order, band_rows)?, sinks)
+    bake(&mut BandReader::new(source, plan.edges.y, order, band_rows)?)
 }

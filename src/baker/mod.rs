@@ -2,6 +2,7 @@
 
 mod bake;
 mod blend;
+mod levels;
 mod memory;
 mod parallax;
 mod tangents;

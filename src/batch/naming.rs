@@ -9,7 +9,7 @@ use std::path::{Component, Path, PathBuf};
 use std::str::FromStr;
 
 /// Formats that a folder bake writes.
-pub const OUTPUT_EXTENSIONS: [&str; 3] = ["png", "tif", "exr"];
+pub const OUTPUT_EXTENSIONS: [&str; 5] = ["png", "tif", "exr", "ktx2", "dds"];
 
 /// A map that a height map is baked into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -150,6 +150,6 @@ mod tests {
     fn other_formats_are_refused() {
         let map = Found { path: "x".into(), folder: PathBuf::new(), stem: "x".into(), size: String::new() };
         let error = NameTemplate::default().outputs(&map, &[Normal], Path::new("out"), "jpg").unwrap_err();
-        assert_eq!(error.to_string(), "format is jpg: it must be png, tif or exr");
+        assert_eq!(error.to_string(), "format is jpg: it must be png, tif, exr, ktx2 or dds");
     }
 }

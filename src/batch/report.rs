@@ -178,6 +178,12 @@ pub struct Options {
     pub precision: String,
     /// How hard files are compressed.
     pub compression: String,
+    /// Whether there are all mip levels.
+    pub mips: bool,
+    /// The blocks of texels, if any.
+    pub block_compression: Option<String>,
+    /// The tiles around the input, if it is one of a larger map.
+    pub neighbours: Option<String>,
     /// The channel that was read.
     pub channel: Option<String>,
     /// What the height codes mean.
@@ -369,7 +375,7 @@ impl Options {
         // All fields by name, so that none can be forgotten: what stands here decides what is baked again.
         let BakeOptions { scale, filter, edges, normal, parallax, precision } = job.options;
         let ReadOptions { channel, color_space, raw, shrink, max_bytes } = &job.read;
-        let WriteOptions { compression } = job.write;
+        let WriteOptions { compression, mips, blocks } = job.write;
         let maps = [normal.map(|_| MapKind::Normal), parallax.map(|_| MapKind::Parallax)];
         let maps: Vec<String> = maps.into_iter().flatten().map(|kind| kind.to_string()).collect();
         Self {
@@ -386,6 +392,9 @@ impl Options {
             iterations: parallax.map(|_| iterations.get()),
             precision: precision.to_string(),
             compression: compression.to_string(),
+            mips,
+            block_compression: blocks.map(|blocks| blocks.to_string()),
+            neighbours: job.neighbours.as_ref().map(ToString::to_string),
             channel: channel.as_ref().map(ToString::to_string),
             color_space: color_space.to_string(),
             raw: raw.map(|layout| layout.to_string()),

@@ -1,7 +1,7 @@
 //! The command line.
 
 use super::resources::Resources;
-use super::settings::{CodeChoice, Device, FileOutput, HeightInput, NormalOutput, Settings, Slope};
+use super::settings::{CodeChoice, Device, FileOutput, HeightInput, NormalOutput, Settings, Slope, Tiles};
 use super::values::{ByteSize, MapChoice, WeightPair, choice, iterations, value};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -60,13 +60,14 @@ Examples:
   texbake normal wall.png -o normal.png --filter scharr --convention dx
   texbake normal wall.png -o normal.png --size 2.0x2.0 --depth 0.1 --bits 16
   texbake normal m.tif -o n.png --size 90000x90000 --depth 65535 --edge clamp
-  texbake normal terrain.raw --raw 1025x1025:u16le -o n.tif --edge clamp")]
+  texbake normal terrain.raw --raw 1025x1025:u16le -o n.tif --edge clamp
+  texbake normal wall.png -o normal.ktx2 --block-compression bc5")]
 pub struct NormalArguments {
     /// Height map: PNG, TIFF, EXR, TGA, BMP, JPEG, WebP, or any file with --raw
     #[arg(value_name = "INPUT")]
     pub input: PathBuf,
 
-    /// Normal map: .png, .tif or .exr; missing folders are made
+    /// Normal map: .png, .tif, .exr, .ktx2 or .dds; missing folders are made
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
 
@@ -84,7 +85,8 @@ pub struct NormalArguments {
 #[derive(Args, Debug)]
 #[command(after_help = "\
 A PNG has no signed numbers: it holds biased codes, of which 128 (or 32768) is
-exactly zero, and v = (code - 128) / 127. TIFF holds snorm codes, EXR floats.
+exactly zero, and v = (code - 128) / 127. EXR holds floats, the others snorm
+codes.
 In the unorm codes of a given normal map 128 (or 32768) reads as exactly 0.
 
 What a shader needs goes into --json and --report: for each axis
@@ -102,18 +104,18 @@ pub struct ParallaxArguments {
     #[arg(value_name = "INPUT")]
     pub input: PathBuf,
 
-    /// Parallax map: .png, .tif or .exr; missing folders are made
+    /// Parallax map: .png, .tif, .exr, .ktx2 or .dds; missing folders are made
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
 
     #[command(flatten)]
     pub slope: Slope,
 
-    /// How a value becomes a code [default: biased in PNG, snorm in TIFF, float in EXR files]
+    /// How a value becomes a code [default: biased in PNG, snorm in TIFF, KTX2 and DDS, float in EXR files]
     #[arg(long, value_parser = choice::<Encoding>(Encoding::NAMES), help_heading = PARALLAX_MAP)]
     pub encoding: Option<Encoding>,
 
-    /// Bits of a code; f is for float [default: 8 in PNG and TIFF, 32f in EXR files]
+    /// Bits of a code; f is for float [default: 32f in EXR files, else 8]
     #[arg(long, value_parser = choice::<Depth>(Depth::NAMES), help_heading = PARALLAX_MAP)]
     pub bits: Option<Depth>,
 
@@ -128,7 +130,7 @@ pub struct ParallaxArguments {
 
     /// Normal map of the same size that gives n_z, instead of the heights' slopes; --scale is then for the numbers in
     /// --json and --report
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["filter", "edge"], help_heading = GIVEN_NORMALS)]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["filter", "edge", "neighbours"], help_heading = GIVEN_NORMALS)]
     pub normal: Option<PathBuf>,
 
     /// How its codes are read [default: unorm; snorm for signed integers, float for floats]
@@ -146,6 +148,9 @@ pub struct ParallaxArguments {
 
     #[command(flatten)]
     pub heights: HeightInput,
+
+    #[command(flatten)]
+    pub tiles: Tiles,
 
     #[command(flatten)]
     pub device: Device,
@@ -177,8 +182,8 @@ tex/brick/wall_height_2k.png becomes brick/wall_normal_2k.png.
 Each setting comes from the command line, else from the last [[override]] in
 texbake.toml that has it and whose glob matches the file's path below the
 folder, else from [defaults]. A --format on the command line also takes the
-place of bits and encodings in texbake.toml that it cannot hold. A key is the
-name of an option:
+place of bits, encodings and blocks in texbake.toml that it cannot hold. A key
+is the name of an option:
 
   suffix = [\"_height\", \"_dem\"]
   [defaults]
@@ -212,6 +217,7 @@ Examples:
   texbake bake textures --out baked --scale 24 --dry-run
   texbake bake textures --out baked --watch
   texbake bake textures --out baked --convention dx --format tif --bits 16
+  texbake bake textures --out baked --format dds --block-compression bc7
   texbake bake dem_1.tif dem_2.tif --out baked --edge clamp --report r.json")]
 pub struct BakeArguments {
     /// Folders to search, and files
@@ -292,12 +298,13 @@ pub struct PerFile {
     #[arg(long, value_parser = OUTPUT_EXTENSIONS, help_heading = "Files")]
     pub format: Option<String>,
 
-    /// How a value of a parallax map becomes a code [default: biased in PNG (128 is zero), snorm in TIFF, float in EXR]
+    /// How a value of a parallax map becomes a code [default: biased in PNG (128 is zero), float in EXR, else
+    /// snorm]
     #[arg(long, value_name = "ENCODING", value_parser = choice::<Encoding>(Encoding::NAMES))]
     #[arg(help_heading = PARALLAX_MAP)]
     pub parallax_encoding: Option<Encoding>,
 
-    /// Bits of a code of a parallax map [default: 8 in PNG and TIFF, 32f in EXR files]
+    /// Bits of a code of a parallax map [default: 32f in EXR files, else 8]
     #[arg(long, value_name = "BITS", value_parser = choice::<Depth>(Depth::NAMES), help_heading = PARALLAX_MAP)]
     pub parallax_bits: Option<Depth>,
 
@@ -306,8 +313,8 @@ pub struct PerFile {
 }
 
 impl PerFile {
-    /// These settings, and those of `weaker` where these say nothing; a format here leaves no encoding and bits from
-    /// there that it cannot hold.
+    /// These settings, and those of `weaker` where these say nothing; a format here leaves no encoding, bits and blocks
+    /// from there that it cannot hold.
     pub fn or(self, weaker: &Self) -> Self {
         let weaker = &match &self.format {
             Some(format) => weaker.held_by(format),
@@ -329,7 +336,8 @@ impl PerFile {
         let output = Path::new("map").with_extension(format);
         let CodeChoice { encoding, bits } = self.parallax().held_by(&output);
         let normal = self.settings.normal.held_by(&output);
-        let settings = Settings { normal, ..self.settings.clone() };
+        let file = self.settings.file.held_by(&output);
+        let settings = Settings { normal, file, ..self.settings.clone() };
         Self { parallax_encoding: encoding, parallax_bits: bits, settings, ..self.clone() }
     }
 
@@ -377,7 +385,7 @@ pub struct BlendArguments {
     #[arg(value_name = "DETAIL")]
     pub detail: PathBuf,
 
-    /// Blended normal map: .png, .tif or .exr; missing folders are made
+    /// Blended normal map: .png, .tif, .exr, .ktx2 or .dds; missing folders are made
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
 

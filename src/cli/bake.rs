@@ -16,7 +16,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
-use texbake::batch::{Found, FreshPlan, Job, JsonFile, MapKind, Report, Search};
+use texbake::batch::{Found, FreshPlan, Job, JsonFile, MapKind, Neighbours, Report, Search, TileFolders};
 use texbake::io::{ReadOptions, WriteOptions};
 use texbake::stream::Monitor;
 use texbake::{BakeOptions, Baker, Error, Maps, ParallaxFormat};
@@ -45,14 +45,16 @@ pub struct Round {
 }
 
 impl Session<'_> {
-    /// What bounds the memory of all rounds, and what an interrupt cancels; before it is first asked for, an interrupt
-    /// ends the program.
+    /// What an interrupt cancels; before it is first asked for, an interrupt ends the program.
+    ///
+    /// # Errors
+    /// As [`Resources::monitor`](super::resources::Resources::monitor).
     pub fn monitor(&self) -> Result<&Monitor, Failure> {
         if let Some(monitor) = self.monitor.get() {
             return Ok(monitor);
         }
-        let monitor = self.arguments.resources.monitor()?;
-        Ok(self.monitor.get_or_init(|| stopped_by_interrupts(monitor)))
+        let monitor = stopped_by_interrupts(self.arguments.resources.monitor()?);
+        Ok(self.monitor.get_or_init(|| monitor))
     }
 
     /// Bakes what is stale. The first of several rounds is forced, if that was asked for, and told in full.
@@ -157,6 +159,7 @@ fn blame(error: Error, config: Option<&Config>) -> Failure {
 struct Chosen {
     outputs: Maps<PathBuf>,
     place: Place,
+    neighbours: Option<Neighbours>,
     options: BakeOptions,
     read: ReadOptions,
     write: WriteOptions,
@@ -164,7 +167,7 @@ struct Chosen {
 
 impl Chosen {
     /// `None` if the file gets no map.
-    fn new(each: &PerFile, map: &Found, out: &Path) -> texbake::Result<Option<Self>> {
+    fn new(each: &PerFile, map: &Found, out: &Path, folders: &mut TileFolders) -> texbake::Result<Option<Self>> {
         let settings = &each.settings;
         let maps = MapChoice::kinds(each.maps.as_deref().unwrap_or(&[MapChoice::Map(MapKind::Normal)]))?;
         if maps.is_empty() {
@@ -173,16 +176,18 @@ impl Chosen {
         let (name, format) = (each.name.clone().unwrap_or_default(), each.format.as_deref().unwrap_or("png"));
         let outputs = name.outputs(map, &maps, out, format)?;
         let place = settings.device.place()?;
-        let normal = outputs.normal.as_ref().map(|path| settings.normal.format(path)).transpose()?;
-        let parallax = outputs.parallax.as_ref().map(|path| parallax(each.parallax(), path)).transpose()?;
+        let write = settings.file.write();
+        let normal = outputs.normal.as_ref().map(|path| settings.normal.format(path, &write)).transpose()?;
+        let parallax = outputs.parallax.as_ref().map(|path| parallax(each.parallax(), path, &write)).transpose()?;
         let options = settings.slope.bake(normal, parallax)?;
-        Ok(Some(Self { outputs, place, options, read: settings.input.read(), write: settings.file.write() }))
+        let neighbours = settings.tiles.around_in(folders, &map.path, &options)?;
+        Ok(Some(Self { outputs, place, neighbours, options, read: settings.input.read(), write }))
     }
 }
 
 /// The format of a parallax map; here its options have longer names.
-fn parallax(codes: CodeChoice, output: &Path) -> texbake::Result<ParallaxFormat> {
-    codes.parallax(output).map_err(|error| match error {
+fn parallax(codes: CodeChoice, output: &Path, write: &WriteOptions) -> texbake::Result<ParallaxFormat> {
+    codes.parallax(output, write).map_err(|error| match error {
         Error::Parameter { parameter: "bits", value, range } => {
             Error::Parameter { parameter: "parallax-bits", value, range }
         }
@@ -198,15 +203,16 @@ impl Session<'_> {
     /// a baker.
     fn jobs<'f>(&self, config: Option<&Config>, found: &'f [Found]) -> Result<(Vec<Job>, Vec<&'f Found>), Failure> {
         let (arguments, mut bakers) = (self.arguments, self.bakers.borrow_mut());
+        let mut folders = TileFolders::default();
         let (mut jobs, mut left_out) = (Vec::new(), Vec::new());
         for map in found {
             let below = config.map_or_else(PerFile::default, |config| config.settings(&map.relative()));
-            let choose = |settings| Chosen::new(settings, map, &arguments.out);
+            let mut choose = |settings| Chosen::new(settings, map, &arguments.out, &mut folders);
             let chosen = choose(&arguments.each.clone().or(&below)).map_err(|error| {
                 // Where the command line alone would do, the mistake is in the file.
                 blame(error, config.filter(|_| choose(&arguments.each).is_ok()))
             })?;
-            let Some(Chosen { outputs, place, options, read, write }) = chosen else {
+            let Some(Chosen { outputs, place, neighbours, options, read, write }) = chosen else {
                 left_out.push(map);
                 continue;
             };
@@ -218,7 +224,8 @@ impl Session<'_> {
                     baker
                 }
             };
-            jobs.push(Job { input: map.path.clone(), outputs, normals: None, read, options, write, baker });
+            let input = map.path.clone();
+            jobs.push(Job { input, outputs, normals: None, neighbours, read, options, write, baker });
         }
         let asks_for_parallax = arguments.each.parallax() != CodeChoice::default();
         if asks_for_parallax && jobs.iter().all(|job| job.outputs.parallax.is_none()) {

@@ -54,10 +54,11 @@ pub fn blend(arguments: &BlendArguments) -> Result<Exit, Failure> {
 
 fn job(arguments: &BlendArguments, method: Method) -> Result<BlendJob, Failure> {
     let (formula, inputs) = (&arguments.formula, &arguments.inputs);
+    let write = arguments.file.write();
     let options = BlendOptions {
         method: formula.formula(method)?,
         tile: formula.tile,
-        format: arguments.normal.format(&arguments.output)?,
+        format: arguments.normal.format(&arguments.output, &write)?,
         precision: formula.precision.unwrap_or_default(),
     };
     let max_bytes = max_bytes(inputs.max_bytes);
@@ -76,7 +77,7 @@ fn job(arguments: &BlendArguments, method: Method) -> Result<BlendJob, Failure> 
         mask: formula.mask.clone().map(|path| MaskInput { path, read: mask() }),
         output: arguments.output.clone(),
         options,
-        write: arguments.file.write(),
+        write,
         baker: Arc::new(open_baker(&arguments.device.place()?)?),
     })
 }

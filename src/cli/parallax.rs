@@ -11,14 +11,17 @@ use texbake::io::NormalReadOptions;
 
 pub fn parallax(arguments: &ParallaxArguments) -> Result<Exit, Failure> {
     arguments.resources.start_threads()?;
-    let options = arguments.slope.bake(None, Some(arguments.codes().parallax(&arguments.output)?))?;
+    let write = arguments.file.write();
+    let format = arguments.codes().parallax(&arguments.output, &write)?;
+    let options = arguments.slope.bake(None, Some(format))?;
     let job = Job {
         input: arguments.input.clone(),
         outputs: Maps { normal: None, parallax: Some(arguments.output.clone()) },
         normals: given_normals(arguments),
+        neighbours: arguments.tiles.around(&arguments.input, &options)?,
         read: arguments.heights.read(),
         options,
-        write: arguments.file.write(),
+        write,
         baker: Arc::new(open_baker(&arguments.device.place()?)?),
     };
     let sidecar = arguments.json.then(|| arguments.output.with_extension("json"));

@@ -9,7 +9,7 @@ use texbake::{Error, Result};
 /// Cores and memory of a run.
 #[derive(Args, Debug)]
 pub struct Resources {
-    /// Cores that read, bake and write at the same time [default: all]
+    /// Cores that the run takes [default: all]
     #[arg(long, value_name = "N", help_heading = HEADING)]
     pub threads: Option<NonZeroUsize>,
 
@@ -25,14 +25,18 @@ const HEADING: &str = "Where it runs";
 const BESIDE_ROWS: u64 = 8 << 20;
 
 impl Resources {
-    /// Starts the threads that do all work; the first thing of a run.
+    /// Keeps the run to its cores, and starts the threads that bake and compress; the first thing of a run, since
+    /// threads may run where the one that starts them may.
     ///
     /// # Errors
-    /// [`Error::Threads`] if the system refuses them.
+    /// [`Error::Threads`] if the system refuses.
     pub fn start_threads(&self) -> Result<()> {
         let Some(threads) = self.threads else { return Ok(()) };
+        let refused = |reason: String| Error::Threads { reason };
+        #[cfg(target_os = "linux")]
+        keep_to_cores(threads.get()).map_err(|error| refused(error.to_string()))?;
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global();
-        pool.map_err(|error| Error::Threads { reason: error.to_string() })
+        pool.map_err(|error| refused(error.to_string()))
     }
 
     /// What watches the bakes of the run, and bounds their memory; called once devices are open, since what they took
@@ -52,4 +56,17 @@ impl Resources {
             }
         }
     }
+}
+
+/// Lets the process, with the threads of its files, its libraries and drivers, run on `count` of its cores: others for
+/// each process, so that several of them share the machine.
+#[cfg(target_os = "linux")]
+fn keep_to_cores(count: usize) -> rustix::io::Result<()> {
+    use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity};
+    let allowed = sched_getaffinity(None)?;
+    let cores: Vec<usize> = (0..CpuSet::MAX_CPU).filter(|core| allowed.is_set(*core)).collect();
+    let first = std::process::id() as usize * count % cores.len().max(1);
+    let mut chosen = CpuSet::new();
+    cores.iter().cycle().skip(first).take(count.min(cores.len())).for_each(|core| chosen.set(*core));
+    sched_setaffinity(None, &chosen)
 }

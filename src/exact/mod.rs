@@ -7,15 +7,16 @@ mod read;
 mod round;
 mod scale;
 mod weights;
+mod wide;
 
 pub(crate) use acos::acos;
 #[cfg(all(test, feature = "gpu"))]
 pub(crate) use acos::nearest_acos;
 pub(crate) use acos::{acos_estimate, is_in_doubt};
-use float::Wide;
 pub(crate) use float::{nearest_f16, nearest_f32};
 pub use rational::Rational;
 pub(crate) use read::CodeReading;
 pub(crate) use round::CodeRounding;
 pub use scale::{AxisScale, Scale};
 pub use weights::Weights;
+pub(crate) use wide::{Radicand, Wide};

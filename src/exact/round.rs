@@ -1,6 +1,6 @@
 //! The nearest integer code to a component A / sqrt(S), decided in integers.
 
-use super::Wide;
+use super::Radicand;
 use crate::map::{Depth, Encoding, TexelFormat};
 
 /// How one integer encoding rounds.
@@ -37,12 +37,10 @@ impl CodeRounding {
         Some(Self { m, c, least, greatest: l, offset, mask })
     }
 
-    /// The code of the component `a / sqrt(s)`, as it is stored.
-    ///
-    /// `|a| < 2^53`, `a^2 <= s < 2^107`.
-    pub fn code(&self, a: i64, s: u128) -> u32 {
+    /// The code of the component `a / sqrt(s)`, `a^2 <= s`, as it is stored.
+    pub fn code<S: Radicand>(&self, a: S::Part, s: S) -> u32 {
         // The estimate is off by far less than half a code, so one comparison decides between two codes.
-        let estimate = a as f64 / (s as f64).sqrt();
+        let estimate = S::float(a) / s.to_f64().sqrt();
         let below = ((f64::from(self.m) * estimate + f64::from(self.c)) * 0.5).floor() as i32;
         let below = below.clamp(self.least, self.greatest - 1);
         let reaches_next = self.reaches(a, s, 2 * below + 1 - self.c);
@@ -50,11 +48,11 @@ impl CodeRounding {
     }
 
     /// Whether `m a >= t sqrt(s)`.
-    fn reaches(&self, a: i64, s: u128, t: i32) -> bool {
+    fn reaches<S: Radicand>(&self, a: S::Part, s: S, t: i32) -> bool {
         let square = |value: i32| u64::from(value.unsigned_abs()).pow(2);
-        let mmaa = Wide::product(u128::from(a.unsigned_abs()).pow(2), square(self.m));
-        let tts = Wide::product(s, square(t));
-        match (a < 0, t < 0) {
+        let mmaa = S::square(a).times(square(self.m));
+        let tts = s.times(square(t));
+        match (S::float(a) < 0.0, t < 0) {
             (false, true) => true,
             (true, false) => false,
             (false, false) => mmaa >= tts,

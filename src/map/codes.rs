@@ -151,11 +151,16 @@ impl CodesMut<'_> {
 
     /// The codes in pieces of `count`, to fill at the same time; the last piece may be shorter.
     pub fn chunks(&mut self, count: usize) -> Vec<CodesMut<'_>> {
+        self.slice(0..self.len()).into_chunks(count)
+    }
+
+    /// The same pieces for as long as the room itself lasts.
+    pub(crate) fn into_chunks(self, count: usize) -> Vec<Self> {
         match self {
-            Self::U8(codes) => codes.chunks_mut(count).map(CodesMut::U8).collect(),
-            Self::U16(codes) => codes.chunks_mut(count).map(CodesMut::U16).collect(),
-            Self::F16(codes) => codes.chunks_mut(count).map(CodesMut::F16).collect(),
-            Self::F32(codes) => codes.chunks_mut(count).map(CodesMut::F32).collect(),
+            Self::U8(codes) => codes.chunks_mut(count).map(Self::U8).collect(),
+            Self::U16(codes) => codes.chunks_mut(count).map(Self::U16).collect(),
+            Self::F16(codes) => codes.chunks_mut(count).map(Self::F16).collect(),
+            Self::F32(codes) => codes.chunks_mut(count).map(Self::F32).collect(),
         }
     }
 

@@ -41,6 +41,20 @@ impl Size {
     pub fn texels(self) -> usize {
         self.width * self.height
     }
+
+    /// The sizes of its mip levels, from its own down to 1 x 1: max(1, floor(w / 2^k)) x max(1, floor(h / 2^k)).
+    ///
+    /// ```
+    /// use texbake::Size;
+    ///
+    /// let levels: Vec<String> = Size::new(100, 6)?.levels().map(|size| size.to_string()).collect();
+    /// assert_eq!(levels, ["100 x 6", "50 x 3", "25 x 1", "12 x 1", "6 x 1", "3 x 1", "1 x 1"]);
+    /// # Ok::<(), texbake::Error>(())
+    /// ```
+    pub fn levels(self) -> impl ExactSizeIterator<Item = Self> + DoubleEndedIterator {
+        let count = self.width.max(self.height).ilog2() as usize + 1;
+        (0..count).map(move |level| Self { width: (self.width >> level).max(1), height: (self.height >> level).max(1) })
+    }
 }
 
 impl fmt::Display for Size {

@@ -6,7 +6,7 @@ use crate::error::Result;
 use std::thread::{Builder, JoinHandle};
 
 /// What a reading thread has filled, in its order.
-pub(super) struct ReadAhead<T> {
+pub(crate) struct ReadAhead<T> {
     /// `None` once nothing more is wanted.
     filled: Option<Recycling<T>>,
     current: Option<T>,
@@ -42,6 +42,13 @@ impl<T> ReadAhead<T> {
             thread::join(thread)?;
         }
         Ok(self.current.as_ref())
+    }
+}
+
+impl<T> ReadAhead<T> {
+    /// The buffer in use: the one that [`ReadAhead::next`] returned last.
+    pub fn current(&self) -> Option<&T> {
+        self.current.as_ref()
     }
 }
 

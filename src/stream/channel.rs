@@ -13,7 +13,7 @@ pub(super) struct Recycling<T> {
 }
 
 /// The side that fills buffers.
-pub(super) struct Filling<T> {
+pub(crate) struct Filling<T> {
     full: SyncSender<T>,
     empty: Receiver<T>,
     /// Buffers that may still be made.

@@ -2,7 +2,6 @@
 
 use super::ahead::ReadAhead;
 use super::channel::Filling;
-use super::thread;
 use crate::error::Result;
 use crate::map::{Codes, CodesMut, CodesRef, Depth};
 
@@ -95,10 +94,9 @@ impl LayerReader {
                     layers: sources.iter().map(|it| Codes::zeroed(it.depth(), rows * it.row_codes())).collect(),
                 };
                 let mut buffer = buffer.filter(|buffer| buffer.rows == rows).unwrap_or_else(room);
-                thread::on_pool(|| {
-                    let mut layers = sources.iter_mut().zip(&mut buffer.layers);
-                    layers.try_for_each(|(source, layer)| source.read(layer.as_mut()))
-                })?;
+                for (source, layer) in sources.iter_mut().zip(&mut buffer.layers) {
+                    source.read(layer.as_mut())?;
+                }
                 filling.send(buffer);
             }
             Ok(())

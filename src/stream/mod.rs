@@ -19,8 +19,9 @@ mod tests;
 mod thread;
 mod writer;
 
+pub(crate) use ahead::ReadAhead;
 pub(crate) use band::{Band, HeightBand, HeightBands};
-pub(crate) use channel::BUFFERS;
+pub(crate) use channel::{BUFFERS, Filling};
 pub(crate) use layers::{LayerBand, LayerBands, LayerReader, LayerSource, MapLayers};
 pub(crate) use memory::{MapBands, MapSink};
 pub use monitor::Monitor;
@@ -30,8 +31,6 @@ pub use normals::{NormalSource, read_normals};
 pub(crate) use order::RowOrder;
 pub(crate) use reader::{BandReader, read_map_watched};
 pub use reader::{RowSource, read_map};
-#[cfg(feature = "cli")]
-pub(crate) use thread::on_pool;
 pub(crate) use writer::{CodeSink, CodeWriter};
 pub use writer::{LevelSink, RowSink};
 

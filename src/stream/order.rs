@@ -14,7 +14,7 @@ pub(crate) enum RowOrder {
 
 impl RowOrder {
     /// The row, of a map of `height` rows, that travels after `travelled` others.
-    pub(super) fn row(self, travelled: usize, height: usize) -> usize {
+    pub fn row(self, travelled: usize, height: usize) -> usize {
         match self {
             Self::FromTop => travelled,
             Self::FirstRowLast => (travelled + 1) % height,

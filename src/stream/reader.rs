@@ -5,7 +5,6 @@ use super::band::{Band, HeightBand, HeightBands};
 use super::channel::Filling;
 use super::monitor::Monitor;
 use super::order::RowOrder;
-use super::thread;
 use crate::error::Result;
 use crate::map::{Edge, Grid, HeightMap, HeightType, HeightsMut, Size};
 
@@ -22,6 +21,15 @@ pub trait RowSource: Send {
     /// # Errors
     /// The reason that the file gives; [`crate::Error::NotFinite`] for a height that has no slope.
     fn read(&mut self, rows: HeightsMut<'_>) -> Result<()>;
+
+    /// Goes past the next rows, never more than are left.
+    ///
+    /// # Errors
+    /// As [`RowSource::read`].
+    fn skip(&mut self, rows: usize) -> Result<()> {
+        let mut row = BandBuffer::new(self.size().width(), self.height_type(), 1);
+        (0..rows).try_for_each(|_| self.read(row.rows_mut(0, 1)))
+    }
 
     /// Reads the last row and goes back to the first: what a map that wraps needs before anything else.
     ///
@@ -59,7 +67,7 @@ impl BandReader {
             let mut cutter = BandCutter::new(source, edge, order)?;
             while let Some(buffer) = filling.take() {
                 let buffer = buffer.unwrap_or_else(|| cutter.buffer(band_rows));
-                match thread::on_pool(|| cutter.next(buffer, band_rows))? {
+                match cutter.next(buffer, band_rows)? {
                     Some(band) => filling.send(band),
                     None => break,
                 }

@@ -1,4 +1,4 @@
-//! Threads beside a bake: one reads, one writes. They wait; what they compute, the threads of the pool do.
+//! Threads beside a bake: one reads, one writes.
 
 use crate::error::{Error, Result};
 use std::thread::{Builder, JoinHandle};
@@ -17,12 +17,6 @@ pub(super) fn start<T: Send + 'static>(
 /// What the thread's job returned; its panic is the caller's.
 pub(super) fn join<T>(thread: JoinHandle<T>) -> T {
     thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-}
-
-/// Does `work` on a thread of the pool, so that no more cores are busy than it has threads, however many files are read
-/// and written meanwhile.
-pub(crate) fn on_pool<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    rayon::scope(|_| work())
 }
 
 #[cfg(test)]

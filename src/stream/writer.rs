@@ -97,7 +97,7 @@ impl CodeWriter {
         let write_all = move || {
             let mut travelled = 0;
             while let Some(codes) = full.receive() {
-                thread::on_pool(|| sink.write(order.row(travelled, size.height()), codes.as_ref()))?;
+                sink.write(order.row(travelled, size.height()), codes.as_ref())?;
                 travelled += codes.as_ref().len() / row_codes;
                 full.give_back(codes);
             }

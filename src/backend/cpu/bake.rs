@@ -1,7 +1,7 @@
 //! Heights of a strip to its maps, block by block: sums, components, codes, texels.
 
 use super::output::{Output, Proving, written};
-use super::plane::{BLOCK, Plane, padded};
+use super::plane::{BLOCK, padded};
 use super::real::Arithmetic;
 use super::slopes::{Estimate, Slopes, normals, parallaxes};
 use super::sums::{Height, sums_inside};
@@ -63,7 +63,7 @@ fn fill<T: Height, S: Slopes<T>>(
     for row in 0..strip.rows() {
         for first in (0..width).step_by(BLOCK) {
             let count = BLOCK.min(width - first);
-            sums_of_block(plan, strip, row, first, &mut sums, count);
+            sums_of_columns(plan, strip, row, first, sums.each_mut().map(|sums| &mut sums[..count]));
             normals::<T, S>(slopes, &sums, &mut normal, padded(count));
             let sums = |at: usize| [sums[0][at], sums[1][at]];
             let [x, y, z] = &normal;
@@ -82,16 +82,16 @@ fn fill<T: Height, S: Slopes<T>>(
     }
 }
 
-/// The sums of the columns `first..first + count` of a row.
-fn sums_of_block<T: Height>(
+/// The sums of the columns of a row from `first` on.
+pub(super) fn sums_of_columns<T: Height>(
     plan: &BakePlan,
     strip: &Band<'_, T>,
     row: usize,
     first: usize,
-    sums: &mut [Plane<T::Sum>; 2],
-    count: usize,
+    sums: [&mut [T::Sum]; 2],
 ) {
-    let last = plan.size.width() - 1;
+    let (count, last) = (sums[0].len(), plan.size.width() - 1);
+    let mut sums = sums;
     for border in [0, last].into_iter().filter(|column| (first..first + count).contains(column)) {
         let at_border = T::sums(plan.stencil, strip.neighbours(plan.edges.x, border, row));
         sums.iter_mut().zip(at_border).for_each(|(sums, sum)| sums[border - first] = sum);
@@ -99,7 +99,7 @@ fn sums_of_block<T: Height>(
     let inside = first.max(1)..(first + count).min(last);
     if !inside.is_empty() {
         let rows = [-1, 0, 1].map(|step| strip.row(row as isize + step));
-        let sums = sums.each_mut().map(|sums| &mut sums[inside.start - first..inside.end - first]);
+        let sums = sums.map(|sums| &mut sums[inside.start - first..inside.end - first]);
         sums_inside(plan.stencil, rows, inside.start, sums);
     }
 }

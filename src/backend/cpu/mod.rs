@@ -16,6 +16,7 @@
 mod bake;
 mod blend;
 mod f16_bits;
+pub(crate) mod levels;
 mod output;
 mod parallax;
 mod plane;

@@ -2,15 +2,16 @@
 
 use super::plane::{BLOCK, LANES, Plane, padded};
 use super::round::{Prove, Round, ToF16, ToF32, ToInteger};
+use crate::exact::Radicand;
 use crate::map::{CodesMut, TexelFormat};
 
 /// Components a / sqrt(s), for as many a as there are channels.
-pub(super) type Fraction = ([i64; 3], u128);
+pub(super) type Fraction<S = u128> = ([<S as Radicand>::Part; 3], S);
 
 /// The codes of a map, texel after texel.
-pub(super) trait Output<V> {
+pub(super) trait Output<V, S: Radicand = u128> {
     /// Stores the next `count` texels. A component in doubt becomes what `exact` says for the texel of its index.
-    fn store(&mut self, components: &[&Plane<V>], count: usize, exact: &dyn Fn(usize) -> Fraction);
+    fn store(&mut self, components: &[&Plane<V>], count: usize, exact: &dyn Fn(usize) -> Fraction<S>);
 }
 
 /// Room for texels whose components are floats as the reference computes them, or need be no better.
@@ -25,12 +26,12 @@ pub(super) fn written<'a>(format: TexelFormat, codes: CodesMut<'a>) -> Box<dyn O
 
 /// Floats whose error can be told from the distance between codes.
 pub(super) trait Proving: Copy + Default {
-    /// Room for texels whose components are estimates, off by 8.5e at most (see [`super::real`]).
-    fn proved<'a>(format: TexelFormat, codes: CodesMut<'a>) -> Box<dyn Output<Self> + 'a>;
+    /// Room for texels whose components are estimates, off by 13e at most (see [`super::real`]).
+    fn proved<'a, S: Radicand + 'a>(format: TexelFormat, codes: CodesMut<'a>) -> Box<dyn Output<Self, S> + 'a>;
 }
 
 impl Proving for f32 {
-    fn proved<'a>(format: TexelFormat, codes: CodesMut<'a>) -> Box<dyn Output<f32> + 'a> {
+    fn proved<'a, S: Radicand + 'a>(format: TexelFormat, codes: CodesMut<'a>) -> Box<dyn Output<f32, S> + 'a> {
         match codes {
             CodesMut::U8(codes) => of_channels(format, Proved(ToInteger::<u8>::new(format)), codes),
             _ => unreachable!("f32 is for codes of 8 bits"),
@@ -39,7 +40,7 @@ impl Proving for f32 {
 }
 
 impl Proving for f64 {
-    fn proved<'a>(format: TexelFormat, codes: CodesMut<'a>) -> Box<dyn Output<f64> + 'a> {
+    fn proved<'a, S: Radicand + 'a>(format: TexelFormat, codes: CodesMut<'a>) -> Box<dyn Output<f64, S> + 'a> {
         match codes {
             CodesMut::U8(codes) => of_channels(format, Proved(ToInteger::<u8>::new(format)), codes),
             CodesMut::U16(codes) => of_channels(format, Proved(ToInteger::<u16>::new(format)), codes),
@@ -56,7 +57,7 @@ trait Rule<V> {
     fn code(&self, component: V) -> (Self::Code, bool);
 
     /// The code of `a / sqrt(s)`.
-    fn exact(&self, a: i64, s: u128) -> Self::Code;
+    fn exact<S: Radicand>(&self, a: S::Part, s: S) -> Self::Code;
 }
 
 struct Written<R>(R);
@@ -71,7 +72,7 @@ impl<R: Round> Rule<f32> for Written<R> {
         (self.0.code(component), false)
     }
 
-    fn exact(&self, _: i64, _: u128) -> R::Code {
+    fn exact<S: Radicand>(&self, _: S::Part, _: S) -> R::Code {
         unreachable!("written floats have no doubts")
     }
 }
@@ -85,42 +86,42 @@ impl<V, R: Prove<V>> Rule<V> for Proved<R> {
     }
 
     #[cold]
-    fn exact(&self, a: i64, s: u128) -> R::Code {
+    fn exact<S: Radicand>(&self, a: S::Part, s: S) -> R::Code {
         self.0.exact(a, s)
     }
 }
 
-fn of_channels<'a, V: Copy, R: Rule<V> + 'a>(
+fn of_channels<'a, V: Copy, S: Radicand + 'a, R: Rule<V> + 'a>(
     format: TexelFormat,
     rule: R,
     codes: &'a mut [R::Code],
-) -> Box<dyn Output<V> + 'a> {
+) -> Box<dyn Output<V, S> + 'a> {
     match format.channels {
-        1 => Box::new(Texels::<R, R::Code, 1>::new(rule, codes)),
-        2 => Box::new(Texels::<R, R::Code, 2>::new(rule, codes)),
-        _ => Box::new(Texels::<R, R::Code, 3>::new(rule, codes)),
+        1 => Box::new(Texels::<S, R, R::Code, 1>::new(rule, codes)),
+        2 => Box::new(Texels::<S, R, R::Code, 2>::new(rule, codes)),
+        _ => Box::new(Texels::<S, R, R::Code, 3>::new(rule, codes)),
     }
 }
 
 /// Texels of N codes, and scratch for one block of them.
-struct Texels<'a, R, C, const N: usize> {
+struct Texels<'a, S: Radicand, R, C, const N: usize> {
     rule: R,
     /// Those to come.
     codes: &'a mut [C],
     planes: [Plane<C>; N],
     doubts: Plane<bool>,
     /// What was in doubt last, and its codes.
-    mended: Option<(Fraction, [C; N])>,
+    mended: Option<(Fraction<S>, [C; N])>,
 }
 
-impl<'a, R, C: Copy + Default, const N: usize> Texels<'a, R, C, N> {
+impl<'a, S: Radicand, R, C: Copy + Default, const N: usize> Texels<'a, S, R, C, N> {
     fn new(rule: R, codes: &'a mut [C]) -> Self {
         Self { rule, codes, planes: [[C::default(); BLOCK]; N], doubts: [false; BLOCK], mended: None }
     }
 }
 
-impl<V: Copy, R: Rule<V>, const N: usize> Output<V> for Texels<'_, R, R::Code, N> {
-    fn store(&mut self, components: &[&Plane<V>], count: usize, exact: &dyn Fn(usize) -> Fraction) {
+impl<V: Copy, S: Radicand, R: Rule<V>, const N: usize> Output<V, S> for Texels<'_, S, R, R::Code, N> {
+    fn store(&mut self, components: &[&Plane<V>], count: usize, exact: &dyn Fn(usize) -> Fraction<S>) {
         let components = components.first_chunk().expect("a component for each channel");
         codes_or_doubts(&self.rule, components, &mut self.planes, &mut self.doubts, padded(count));
         self.mend(count, exact);
@@ -130,9 +131,9 @@ impl<V: Copy, R: Rule<V>, const N: usize> Output<V> for Texels<'_, R, R::Code, N
     }
 }
 
-impl<C: Copy, R, const N: usize> Texels<'_, R, C, N> {
+impl<C: Copy, S: Radicand, R, const N: usize> Texels<'_, S, R, C, N> {
     /// The exact codes of the texels in doubt.
-    fn mend<V>(&mut self, count: usize, exact: &dyn Fn(usize) -> Fraction)
+    fn mend<V>(&mut self, count: usize, exact: &dyn Fn(usize) -> Fraction<S>)
     where
         R: Rule<V, Code = C>,
     {
@@ -207,7 +208,7 @@ mod tests {
             (self.0.code_or_doubt(component).0, false)
         }
 
-        fn exact(&self, _: i64, _: u128) -> R::Code {
+        fn exact<S: Radicand>(&self, _: S::Part, _: S) -> R::Code {
             unreachable!("it has no doubts")
         }
     }
@@ -235,7 +236,7 @@ mod tests {
         };
         let mut codes = vec![R::Code::default(); 3 * normals.len()];
         let [x, y, z] = &planes;
-        Texels::<R, R::Code, 3>::new(rule, &mut codes).store(&[x, y, z], normals.len(), &exact);
+        Texels::<u128, R, R::Code, 3>::new(rule, &mut codes).store(&[x, y, z], normals.len(), &exact);
         codes
     }
 

@@ -3,8 +3,8 @@
 use crate::ops::bake::{Stencil, float_sums, integer_sums};
 
 /// What a height is to the sums.
-pub(super) trait Height: Copy + Send + Sync {
-    type Sum: Copy + Default;
+pub(crate) trait Height: Copy + Send + Sync {
+    type Sum: Copy + Default + Send;
 
     fn sums(stencil: Stencil, around: [[Self; 3]; 3]) -> [Self::Sum; 2];
 }

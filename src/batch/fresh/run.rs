@@ -9,7 +9,7 @@ use super::reason::{Freshness, Reason};
 use crate::baker::Baked;
 use crate::batch::{Event, Files, Job, Outcome, run, targets};
 use crate::error::Error;
-use crate::stream::{Monitor, on_pool};
+use crate::stream::Monitor;
 use std::path::Path;
 
 impl FreshPlan<'_> {
@@ -84,8 +84,7 @@ impl FreshPlan<'_> {
     /// Remembers how a job was baked, unless an input changed in the meantime.
     fn remember(&self, place: usize, outcome: &Outcome) {
         let (Ok(baked), Decision::Stale { inputs, .. }) = (&outcome.result, &self.decisions[place]) else { return };
-        let line = on_pool(|| self.line(&self.jobs[place], inputs, baked, &outcome.warnings));
-        let Some(line) = line else { return };
+        let Some(line) = self.line(&self.jobs[place], inputs, baked, &outcome.warnings) else { return };
         self.record.add(&[line]).unwrap_or_else(|error| {
             self.warn(format!("{error}: what is baked may be baked again the next time"));
         });

@@ -7,12 +7,14 @@ mod file;
 mod formats;
 mod input;
 mod slope;
+mod tiles;
 
 pub use device::{Backend, Device, Place, open_baker};
 pub use file::FileOutput;
 pub use formats::{CodeChoice, NormalOutput};
 pub use input::{HeightInput, max_bytes};
 pub use slope::Slope;
+pub use tiles::Tiles;
 
 use clap::Args;
 use texbake::{BakeOptions, Baker, Grid, HeightMap, NormalFormat, ParallaxFormat, Result};
@@ -33,6 +35,9 @@ pub struct Settings {
     pub input: HeightInput,
 
     #[command(flatten)]
+    pub tiles: Tiles,
+
+    #[command(flatten)]
     pub device: Device,
 }
 
@@ -46,6 +51,7 @@ impl Settings {
             normal: self.normal.or(&weaker.normal),
             file: self.file.or(&weaker.file),
             input: self.input.or(weaker.input.clone()),
+            tiles: self.tiles.or(&weaker.tiles),
             device: self.device.or(weaker.device.clone()),
         }
     }

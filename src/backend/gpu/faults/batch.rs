@@ -93,6 +93,7 @@ impl Folder {
             input: self.folder.path().join(format!("{file}.raw")),
             outputs: Maps { normal: Some(self.folder.path().join(out).join(format!("{file}.tif"))), parallax: None },
             normals: None,
+            neighbours: None,
             read: ReadOptions { raw, ..Default::default() },
             options: BakeOptions::default(),
             write: WriteOptions::default(),

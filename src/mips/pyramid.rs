@@ -1,0 +1,144 @@
+//! Sums of what texels hold over the texels of every level, while the rows of level 0 come.
+
+use super::level::{Level, levels};
+use super::sample::{Sample, Sum, add_pairs, add_weighted};
+use crate::map::Size;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Sums over the texels of each level, of several planes of samples.
+///
+/// The order of sums, which matters to floats: in each column of the level that a level is made of (see [`levels`]) from
+/// the top down, but row 0 last; then along the row from the left. Row 0 is last because the first row of a map that
+/// wraps may travel last; so the order is the same for every order of rows and every height of bands.
+///
+/// A row is `planes` rows of one value for each texel, one after the other. Besides the rows that come in, three rows of
+/// each level are held.
+pub(super) struct Pyramid<T: Sample> {
+    size: Size,
+    planes: usize,
+    levels: Vec<LevelSums<T::Sum>>,
+    /// Row 0 of level 0, once it has come.
+    first_row: Vec<T>,
+}
+
+/// A level whose rows come into being.
+struct LevelSums<S> {
+    level: Level,
+    /// The columns of the source over its row 0, to which row 0 of the source is still to be added.
+    first: Vec<S>,
+    /// The columns of the source over the row that is not complete, or nothing.
+    open: Vec<S>,
+}
+
+/// Rows of sums of one level.
+pub(super) struct Rows<S> {
+    /// The level, at least 1.
+    pub level: usize,
+    /// What the weights under one of its texels add up to.
+    pub weight: u64,
+    /// Texels of a row.
+    pub width: usize,
+    /// Which rows they are.
+    pub rows: Range<usize>,
+    /// Row after row, each plane after plane.
+    pub sums: Vec<S>,
+}
+
+impl<T: Sample> Pyramid<T> {
+    /// For maps of `size` with `planes` samples at each texel.
+    pub fn new(size: Size, planes: usize) -> Self {
+        let level = |level| LevelSums { level, first: Vec::new(), open: Vec::new() };
+        Self { size, planes, levels: levels(size).into_iter().map(level).collect(), first_row: Vec::new() }
+    }
+
+    /// Adds rows of level 0 from row `first` on; they come from the top, but row 0 at any time. What comes back are the
+    /// rows of all levels that are now complete.
+    pub fn add(&mut self, first: usize, samples: &[T]) -> Vec<Rows<T::Sum>> {
+        let row = self.planes * self.size.width();
+        let (first, samples) = match first {
+            0 => {
+                self.first_row = samples[..row].to_vec();
+                (1, &samples[row..])
+            }
+            first => (first, samples),
+        };
+        self.sum_up(first..first + samples.len() / row, samples)
+    }
+
+    /// Adds row 0 of level 0, which completes all levels: what comes back are their rows 0.
+    pub fn finish(mut self) -> Vec<Rows<T::Sum>> {
+        let first_row = std::mem::take(&mut self.first_row);
+        self.sum_up(0..1, &first_row)
+    }
+
+    fn sum_up(&mut self, rows: Range<usize>, samples: &[T]) -> Vec<Rows<T::Sum>> {
+        let mut complete: Vec<Rows<T::Sum>> = Vec::new();
+        for (index, sums) in self.levels.iter_mut().enumerate() {
+            let Level { size, source, weight, .. } = sums.level;
+            let (rows, added) = match source.checked_sub(1) {
+                None => sums.add(self.planes, rows.clone(), samples),
+                Some(source) => sums.add(self.planes, complete[source].rows.clone(), &complete[source].sums),
+            };
+            complete.push(Rows { level: index + 1, weight, width: size.width(), rows, sums: added });
+        }
+        complete
+    }
+}
+
+impl<S: Sum> LevelSums<S> {
+    /// Adds rows of the source, and gives the rows that are now complete.
+    fn add<T: Sample<Sum = S>>(&mut self, planes: usize, rows: Range<usize>, samples: &[T]) -> (Range<usize>, Vec<S>) {
+        if rows.is_empty() {
+            return (0..0, Vec::new());
+        }
+        let Level { size, y, .. } = self.level;
+        let row_samples = samples.len() / rows.len();
+        let touched = y.covering(&rows);
+        let is_complete = |row: usize| if row == 0 { rows.start == 0 } else { y.covered(row).end <= rows.end };
+        let complete_end = touched.clone().rev().find(|row| is_complete(*row)).map_or(touched.start, |row| row + 1);
+        let complete = touched.start.max(usize::from(rows.start > 0)).min(complete_end)..complete_end;
+
+        let columns_of = |row: usize, begun: Vec<S>| {
+            let mut columns = if begun.is_empty() { vec![S::default(); row_samples] } else { begun };
+            let covered = y.covered(row);
+            for source in covered.start.max(rows.start)..covered.end.min(rows.end) {
+                let samples = &samples[(source - rows.start) * row_samples..][..row_samples];
+                add_weighted(samples, y.weight(row, source), &mut columns);
+            }
+            columns
+        };
+        // What was begun belongs to the first row that is touched; row 0 waits for row 0 of the source.
+        let begun = std::mem::take(if rows.start == 0 { &mut self.first } else { &mut self.open });
+        if touched.start == 0 && rows.start > 0 {
+            self.first = columns_of(0, std::mem::take(&mut self.first));
+        }
+        let row_sums = planes * size.width();
+        let mut sums = vec![S::default(); complete.len() * row_sums];
+        sums.par_chunks_mut(row_sums).zip(complete.clone()).for_each(|(sums, row)| {
+            let begun = if row == touched.start { begun.clone() } else { Vec::new() };
+            self.level.along(planes, &columns_of(row, begun), sums);
+        });
+        let last = touched.end - 1;
+        if last > 0 && !complete.contains(&last) {
+            self.open = columns_of(last, if last == touched.start { begun } else { Vec::new() });
+        }
+        (complete, sums)
+    }
+}
+
+impl Level {
+    /// A row of sums from the sums of the columns over it.
+    fn along<S: Sum>(&self, planes: usize, columns: &[S], sums: &mut [S]) {
+        let width = columns.len() / planes;
+        for (columns, sums) in columns.chunks(width).zip(sums.chunks_mut(self.size.width())) {
+            if self.x.is_pairs() {
+                add_pairs(columns, sums);
+                continue;
+            }
+            for (i, sum) in sums.iter_mut().enumerate() {
+                *sum = self.x.covered(i).fold(S::default(), |sum, x| sum + columns[x].times(self.x.weight(i, x)));
+            }
+        }
+    }
+}
