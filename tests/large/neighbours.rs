@@ -92,6 +92,7 @@ impl Mosaic {
             outputs: Maps {
                 normal: options.normal.map(|_| output("normal")),
                 parallax: options.parallax.map(|_| output("parallax")),
+                roughness: None,
             },
             normals: None,
             neighbours: Some(around.unwrap()),
@@ -112,7 +113,13 @@ impl Mosaic {
     }
 
     /// Fails unless every tile is the cut of `expected`.
-    fn assert_cut(&self, expected: &Maps<NormalMap, texbake::ParallaxMap>, extension: &str, by: usize, what: &str) {
+    fn assert_cut(
+        &self,
+        expected: &Maps<NormalMap, texbake::ParallaxMap, texbake::RoughnessMap>,
+        extension: &str,
+        by: usize,
+        what: &str,
+    ) {
         let whole = [self.whole.size().width() / by, self.whole.size().height() / by];
         for place in places() {
             let (corner, tile) = (self.corner(place).map(|first| first / by), TILE.map(|side| side / by));

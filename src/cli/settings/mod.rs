@@ -69,6 +69,7 @@ impl Slope {
             edges: self.edge.unwrap_or_default(),
             normal,
             parallax,
+            roughness: None,
             precision: self.precision.unwrap_or_default(),
         };
         // A map of one texel shows what is wrong for every map before any file is opened.
