@@ -3,12 +3,14 @@
 mod blend;
 #[cfg(feature = "cli")]
 mod cli;
+mod containers;
 mod extremes;
 mod faults;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod inspect;
 mod io;
+mod large;
 mod material;
 mod materials;
 mod measure;

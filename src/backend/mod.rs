@@ -33,6 +33,12 @@ pub(crate) trait Backend: Send + Sync {
         self.band_rows(row)
     }
 
+    /// Bytes that a job's bands hold at most on this backend, besides the rows that come and go.
+    fn held_bytes(&self, row: RowBytes) -> u64 {
+        let _ = row;
+        0
+    }
+
     /// Bakes all bands of a height map into the rows of the plan's maps, one sink for each.
     ///
     /// # Errors

@@ -1,5 +1,6 @@
 //! Height maps into normal and parallax maps.
 
+use super::memory::job_bytes;
 use super::write::{as_dyn, whole_sink, write_watched};
 use super::{Baker, Ran};
 use crate::backend::RowBytes;
@@ -11,7 +12,8 @@ use crate::map::{
 use crate::mips::{Beside, LevelsOut, RoughnessOut, bake_with_levels};
 use crate::ops::bake::{BakeOptions, BakePlan, NormalOptions, ParallaxOptions};
 use crate::stream::{
-    BandReader, CodeSink, HeightBands, HeightRows, MapBands, MapSink, Monitor, RowOrder, RowsOut, read_map_watched,
+    BandReader, CodeSink, HeightBands, HeightRows, MapBands, MapSink, Monitor, RowOrder, RowSource, RowsOut,
+    read_map_watched,
 };
 
 /// How a bake ran.
@@ -164,6 +166,7 @@ impl Baker {
         monitor: &Monitor,
     ) -> Result<Baked> {
         let (ran, plan) = self.run(|backend| {
+            let turn = monitor.turn();
             let source = open()?;
             let plan = BakePlan::new(options, source.size(), source.height_type())?;
             let sinks = create(plan.size)?;
@@ -176,12 +179,12 @@ impl Baker {
             };
             let levels: Vec<LevelsOut<'_>> = sinks.iter_mut().map(|sink| sink.levels().map(|it| it as _)).collect();
             if options.roughness.is_some() && levels.last().is_none_or(Option::is_none) {
-                return Err(Error::parameter(
-                    "roughness",
-                    "a map without mip levels",
-                    "a .ktx2 or .dds file with mips",
-                ));
+                let range = "a .ktx2 or .dds file with mips";
+                return Err(Error::parameter("roughness", "a map without mip levels", range));
             }
+            let held_map = if is_held(&plan, source.as_ref(), order) { plan.map_bytes() } else { 0 };
+            let passing = job_bytes(backend, RowBytes::of_bake(&plan), plan.size.height(), &sinks);
+            let _memory = turn.take(source.held_bytes() + held_map as u64 + passing, monitor)?;
             write_watched(sinks, &formats(&plan, options), plan.size, order, monitor, |sinks| {
                 let (sinks, beside) = beside(options, sinks, levels);
                 let bake = |bands: &mut dyn HeightBands| bake_with_levels(backend, &plan, order, bands, sinks, beside);
@@ -219,6 +222,12 @@ pub(super) fn beside<'s, 'c>(
     (maps, Beside { levels, roughness: Some(roughness) })
 }
 
+/// Whether the heights are held in memory, since their last row is needed first, and far.
+fn is_held(plan: &BakePlan, source: &dyn RowSource, order: RowOrder) -> bool {
+    let needs_last_row_first = plan.edges.y == Edge::Wrap && order == RowOrder::FromTop;
+    needs_last_row_first && !source.last_row_is_near() && plan.map_bytes() <= HELD_BYTES
+}
+
 /// Bakes the rows of a source, cut into bands.
 fn stream(
     mut source: HeightRows,
@@ -228,9 +237,7 @@ fn stream(
     monitor: &Monitor,
     bake: impl FnOnce(&mut dyn HeightBands) -> Result<()>,
 ) -> Result<()> {
-    let needs_last_row_first = plan.edges.y == Edge::Wrap && order == RowOrder::FromTop;
-    let is_far = needs_last_row_first && !source.last_row_is_near();
-    if is_far && plan.size.texels() * plan.height_type.bytes() <= HELD_BYTES {
+    if is_held(plan, source.as_ref(), order) {
         let map = read_map_watched(source.as_mut(), monitor)?;
         return bake(&mut MapBands::new(&map, plan.edges.y, band_rows));
     }

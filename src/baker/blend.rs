@@ -1,5 +1,6 @@
 //! Two normal maps into one.
 
+use super::memory::job_bytes;
 use super::write::{whole_sink, write_watched};
 use super::{Baker, Ran, check_same_size};
 use crate::backend::RowBytes;
@@ -84,15 +85,22 @@ impl Baker {
         monitor: &Monitor,
     ) -> Result<Blended> {
         let (ran, (size, weights)) = self.run(|backend| {
+            let turn = monitor.turn();
             let BlendInputs { base, mut detail, mask } = open()?;
             let size = base.size();
             let mask_type = mask.as_ref().map(|mask| mask.height_type());
             let plan = BlendPlan::new(options, size, [base.format(), detail.format()], mask_type)?;
             check_layer_sizes(size, detail.size(), mask.as_ref().map(|mask| mask.size()), options)?;
-            if detail.size() != size {
+            let sinks = vec![create(size)?];
+            let tiles = detail.size() != size;
+            let held_tile = if tiles { detail.size().texels() * detail.format().texel().bytes() } else { 0 };
+            let held_by_sources =
+                base.held_bytes() + detail.held_bytes() + mask.as_ref().map_or(0, |mask| mask.held_bytes());
+            let passing = job_bytes(backend, RowBytes::of_blend(&plan), size.height(), &sinks);
+            let _memory = turn.take(held_by_sources + held_tile as u64 + passing, monitor)?;
+            if tiles {
                 detail = Box::new(Tiled::new(read_normals_watched(detail.as_mut(), monitor)?, size));
             }
-            let sinks = vec![create(size)?];
             let mut layers: Vec<Box<dyn LayerSource>> =
                 vec![Box::new(NormalLayer::new(base)), Box::new(NormalLayer::new(detail))];
             if let Some(mask) = mask {

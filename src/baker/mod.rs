@@ -3,6 +3,7 @@
 mod bake;
 mod blend;
 mod levels;
+mod memory;
 mod parallax;
 mod tangents;
 mod write;

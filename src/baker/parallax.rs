@@ -1,5 +1,6 @@
 //! Heights and the normals of another map into parallax maps.
 
+use super::memory::job_bytes;
 use super::write::{whole_sink, write_watched};
 use super::{Baker, Ran, check_same_size};
 use crate::backend::RowBytes;
@@ -52,11 +53,15 @@ impl Baker {
         monitor: &Monitor,
     ) -> Result<(Ran, Size)> {
         self.run(|backend| {
+            let turn = monitor.turn();
             let (heights, normals) = open()?;
             let plan = ParallaxPlan::new(heights.size(), heights.height_type(), normals.format(), format, precision)?;
             check_same_size("size of the normal map", normals.size(), plan.size)?;
             let sinks = vec![create(plan.size)?];
-            let band_rows = backend.band_rows(RowBytes::of_parallax(&plan));
+            let row = RowBytes::of_parallax(&plan);
+            let passing = job_bytes(backend, row, plan.size.height(), &sinks);
+            let _memory = turn.take(heights.held_bytes() + normals.held_bytes() + passing, monitor)?;
+            let band_rows = backend.band_rows(row);
             let layers: Vec<Box<dyn LayerSource>> =
                 vec![Box::new(HeightLayer::new(heights)), Box::new(NormalLayer::new(normals))];
             write_watched(sinks, &[format.texel()], plan.size, RowOrder::FromTop, monitor, |sinks| {

@@ -1,6 +1,7 @@
 //! Files baked side by side.
 
 use super::heights::HeightWatch;
+use super::neighbours::Neighbours;
 use super::normals::NormalInput;
 use super::outcome::Outcome;
 use super::role::{Role, check_same_size};
@@ -8,10 +9,10 @@ use super::targets::{self, Files};
 use crate::baker::{Baked, Baker};
 use crate::error::{Error, Result};
 use crate::exact::Scale;
-use crate::io::{ReadOptions, WriteOptions, create_normals_with, create_parallax_with};
-use crate::map::{Maps, Size};
+use crate::io::{Cropped, ReadOptions, WriteOptions, create_normals_with, create_parallax_with, create_roughness_with};
+use crate::map::{Edge, Edges, Maps, Size};
 use crate::ops::bake::BakeOptions;
-use crate::stream::{Monitor, RowsOut};
+use crate::stream::{HeightRows, Monitor, RowsOut};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -26,6 +27,8 @@ pub struct Job {
     pub outputs: Maps<PathBuf>,
     /// A normal map from which a parallax map, baked alone, takes its normals; `None`: those of the heights.
     pub normals: Option<NormalInput>,
+    /// The tiles around the input, if it is one of a larger map; `None`: the edges are those of the map itself.
+    pub neighbours: Option<Neighbours>,
     /// How the input is read, and by which factor it is reduced.
     pub read: ReadOptions,
     /// What is baked. A scale in texels is one of texels of the file, whatever it is reduced by. Filter and edges do not matter to a parallax map with a given normal map.
@@ -108,7 +111,8 @@ impl Job {
     /// What it reads and writes.
     pub fn files(&self) -> Files<'_> {
         let normals = self.normals.iter().map(|normals| normals.path.as_path());
-        let inputs = [self.input.as_path()].into_iter().chain(normals).collect();
+        let neighbours = self.neighbours.iter().flat_map(Neighbours::files);
+        let inputs = [self.input.as_path()].into_iter().chain(normals).chain(neighbours).collect();
         Files { inputs, outputs: self.outputs.iter().map(PathBuf::as_path).collect() }
     }
 
@@ -137,10 +141,47 @@ impl Job {
             Ok(rows)
         };
         let options = BakeOptions { scale: self.scale()?, ..self.options };
-        let baked = self.baker.bake_rows(&open, &|size| self.create(size), &options, monitor);
+        let baked = match &self.neighbours {
+            None => self.baker.bake_rows(&open, &|size| self.create(size), &options, monitor),
+            Some(neighbours) => self.bake_tile(neighbours, &open, &options, monitor),
+        };
         warnings.extend(heights.warnings(baked.is_ok()));
         warnings.extend(baked.as_ref().ok().and_then(inexact_scale));
         baked
+    }
+
+    /// Bakes a tile with its halo, and writes the tile.
+    fn bake_tile(
+        &self,
+        neighbours: &Neighbours,
+        open: &dyn Fn() -> Result<HeightRows>,
+        options: &BakeOptions,
+        monitor: &Monitor,
+    ) -> Result<Baked> {
+        if neighbours.edges() != options.edges {
+            return Err(Error::parameter(
+                "edge",
+                options.edges,
+                format!("{}, as for its neighbours", neighbours.edges()),
+            ));
+        }
+        if self.write.mips {
+            return Err(Error::parameter("mips", "on", "left out where a map has neighbours"));
+        }
+        let size = open()?.size();
+        let whole = Size::new(size.width() + 2, size.height() + 2)?;
+        let options =
+            BakeOptions { scale: options.scale.over(size, whole)?, edges: Edges::both(Edge::Clamp), ..*options };
+        let open = || Ok(Box::new(neighbours.around(&self.input, open()?, &self.read)?) as HeightRows);
+        let cropped = |(sink, format)| Box::new(Cropped::new(sink, size, format)) as RowsOut;
+        let create = |_| {
+            let Maps { normal, parallax, .. } = self.create(size)?;
+            let normal = normal.zip(options.normal.map(|format| format.texel())).map(cropped);
+            let parallax = parallax.zip(options.parallax.map(|format| format.texel())).map(cropped);
+            Ok(Maps { normal, parallax, roughness: None })
+        };
+        let baked = self.baker.bake_rows(&open, &create, &options, monitor)?;
+        Ok(Baked { size, ..baked })
     }
 
     fn bake_with(
@@ -155,6 +196,12 @@ impl Job {
         else {
             return Err(Error::parameter("maps", "other maps", "parallax alone, where a normal map is given"));
         };
+        if self.neighbours.is_some() {
+            return Err(Error::parameter("neighbours", "given", "left out, where a normal map is given"));
+        }
+        if self.write.mips {
+            return Err(Error::parameter("mips", "on", "left out where a normal map is given: levels are of slopes"));
+        }
         let given = &normals.path;
         let (heights, normals) = (HeightWatch::new(&self.input, &self.read), normals.watch(Role::GivenNormals));
         let open = || {
@@ -188,7 +235,8 @@ impl Job {
     /// A sink for each output.
     fn create(&self, size: Size) -> Result<Maps<RowsOut>> {
         self.outputs.iter().try_for_each(|path| create_folder_of(path))?;
-        let Maps { normal, parallax, .. } = &self.outputs;
+        let Maps { normal, parallax, roughness } = &self.outputs;
+        let roughness = roughness.as_ref().zip(self.options.roughness);
         let normal = normal.as_ref().zip(self.options.normal);
         let parallax = parallax.as_ref().zip(self.options.parallax);
         Ok(Maps {
@@ -196,7 +244,9 @@ impl Job {
             parallax: parallax
                 .map(|(path, format)| create_parallax_with(path, size, format, &self.write))
                 .transpose()?,
-            roughness: None,
+            roughness: roughness
+                .map(|(path, options)| create_roughness_with(path, size, options.format, &self.write))
+                .transpose()?,
         })
     }
 }
@@ -225,6 +275,7 @@ mod tests {
             input: "h.png".into(),
             outputs: Maps { normal: Some("n.png".into()), parallax: None, roughness: None },
             normals: Some(given),
+            neighbours: None,
             read: ReadOptions::default(),
             options: BakeOptions::default(),
             write: WriteOptions::default(),

@@ -13,7 +13,8 @@
 //! let jobs = found.iter().map(|map| {
 //!     let outputs = NameTemplate::default().outputs(map, &[MapKind::Normal], "baked".as_ref(), "png")?;
 //!     let (read, write, options) = (ReadOptions::default(), WriteOptions::default(), BakeOptions::default());
-//!     Ok(Job { input: map.path.clone(), outputs, normals: None, read, options, write, baker: baker.clone() })
+//!     let (input, baker) = (map.path.clone(), baker.clone());
+//!     Ok(Job { input, outputs, normals: None, neighbours: None, read, options, write, baker })
 //! });
 //! let jobs: Vec<Job> = jobs.collect::<texbake::Result<_>>()?;
 //! for (job, outcome) in jobs.iter().zip(run(&jobs, 8, &Monitor::default(), &|_| ())) {
@@ -24,12 +25,14 @@
 
 mod blend;
 mod discovery;
+mod fresh;
 #[cfg(feature = "cli")]
 mod glob;
 mod heights;
 mod job;
 mod mask;
 mod naming;
+mod neighbours;
 mod normals;
 mod offsets;
 mod outcome;
@@ -40,11 +43,13 @@ mod targets;
 
 pub use blend::{BlendJob, BlendOutcome, BlendReport, FormatReport, LayerFacts, LayerReport, UsedWeights};
 pub use discovery::{Found, Search};
+pub use fresh::{Change, FreshPlan, Freshness, KERNEL_VERSION, Reason};
 #[cfg(feature = "cli")]
 pub use glob::FileGlob;
 pub use job::{Event, Job, run};
 pub use mask::MaskInput;
 pub use naming::{MapKind, NameTemplate, OUTPUT_EXTENSIONS};
+pub use neighbours::{Neighbours, TileFolders, TileTemplate};
 pub use normals::{Degenerate, NormalInput};
 pub use offsets::{Decoding, ParallaxNumbers, ParallaxSidecar, WelshNumbers, describe_codes};
 pub use outcome::Outcome;

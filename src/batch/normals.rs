@@ -132,6 +132,10 @@ struct Named {
 }
 
 impl NormalSource for Named {
+    fn held_bytes(&self) -> u64 {
+        self.rows.held_bytes()
+    }
+
     fn size(&self) -> Size {
         self.rows.size()
     }

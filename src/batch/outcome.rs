@@ -1,5 +1,6 @@
 //! What becomes of the work on some files.
 
+use super::fresh::Freshness;
 use super::targets::Files;
 use crate::baker::Baked;
 use crate::error::{Error, Result};
@@ -22,6 +23,8 @@ pub struct Outcome<T = Baked> {
     pub bytes_in: u64,
     /// Bytes of the output files; zero if there is none.
     pub bytes_out: u64,
+    /// Whether the outputs were what the job would have baked, or why not; `None` if nobody asked.
+    pub freshness: Option<Freshness>,
 }
 
 impl<T> Outcome<T> {
@@ -32,14 +35,26 @@ impl<T> Outcome<T> {
         // A fault in the code for one file must not take the other files with it.
         let result = catch_unwind(AssertUnwindSafe(|| work(&mut warnings)))
             .unwrap_or_else(|panic| Err(fault(files.inputs[0], panic.as_ref())));
-        let bytes = |paths: &[&Path]| paths.iter().filter_map(|path| Some(std::fs::metadata(path).ok()?.len())).sum();
         let bytes_out = if result.is_ok() { bytes(&files.outputs) } else { 0 };
-        Self { result, warnings, time: Some(start.elapsed()), bytes_in: bytes(&files.inputs), bytes_out }
+        let (time, bytes_in) = (Some(start.elapsed()), bytes(&files.inputs));
+        Self { result, warnings, time, bytes_in, bytes_out, freshness: None }
+    }
+
+    /// What needed no work: it was done before, with this result.
+    pub(super) fn fresh(files: &Files<'_>, result: T, warnings: Vec<String>) -> Self {
+        let (bytes_in, bytes_out) = (bytes(&files.inputs), bytes(&files.outputs));
+        Self { result: Ok(result), warnings, time: None, bytes_in, bytes_out, freshness: Some(Freshness::Fresh) }
     }
 
     /// What was not begun.
     pub(super) fn unopened(error: Error) -> Self {
-        Self { result: Err(error), warnings: Vec::new(), time: None, bytes_in: 0, bytes_out: 0 }
+        let (warnings, freshness) = (Vec::new(), None);
+        Self { result: Err(error), warnings, time: None, bytes_in: 0, bytes_out: 0, freshness }
+    }
+
+    /// What came of the work that was done; `None` if it failed, or none was needed.
+    pub fn baked(&self) -> Option<&T> {
+        self.result.as_ref().ok().filter(|_| self.freshness != Some(Freshness::Fresh))
     }
 
     /// Why it failed, with `what` it was about where the error names no file; `None` if it did not fail.
@@ -52,6 +67,11 @@ impl<T> Outcome<T> {
             error => Some(format!("{what}: {error}")),
         }
     }
+}
+
+/// Bytes of those files that are there.
+fn bytes(paths: &[&Path]) -> u64 {
+    paths.iter().filter_map(|path| Some(std::fs::metadata(path).ok()?.len())).sum()
 }
 
 /// A panic as an error of the file that caused it.

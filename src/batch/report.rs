@@ -1,11 +1,13 @@
 //! What was done, for other programs: JSON.
 
+use super::fresh::Freshness;
 use super::offsets::ParallaxNumbers;
 use super::targets::{self, Files};
 use super::{Job, MapKind, Outcome};
 use crate::baker::{Baker, Ran};
 use crate::error::{Error, Result};
 use crate::io::replace::{Replacement, open_stream};
+use crate::io::{ReadOptions, WriteOptions};
 use crate::map::Size;
 use crate::ops::bake::BakeOptions;
 use serde::{Serialize, Serializer};
@@ -39,6 +41,8 @@ pub struct Totals {
     pub files: usize,
     /// Those that were baked.
     pub baked: usize,
+    /// Those whose outputs were fresh.
+    pub fresh: usize,
     /// Those that could not be baked.
     pub failed: usize,
     /// Those that were being baked when the run was interrupted; they left no output.
@@ -63,6 +67,8 @@ pub struct Totals {
 pub enum FileResult {
     /// Every map is complete.
     Baked,
+    /// Every map was what would have been baked.
+    Fresh,
     /// There is an error, and no output.
     Failed,
     /// The run was interrupted meanwhile; there is no output.
@@ -89,6 +95,9 @@ pub struct FileReport {
     pub scale: Option<UsedScale>,
     /// What a shader needs to know of the parallax map, if there is one.
     pub parallax: Option<ParallaxNumbers>,
+    /// Why the outputs were not fresh; not there if they were, or nobody asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stale: Option<String>,
     /// How it went.
     #[serde(flatten)]
     pub run: RunReport,
@@ -169,6 +178,18 @@ pub struct Options {
     pub precision: String,
     /// How hard files are compressed.
     pub compression: String,
+    /// Whether there are all mip levels.
+    pub mips: bool,
+    /// How the roughness of levels grows.
+    pub roughness_method: Option<String>,
+    /// Roughness of the largest level.
+    pub base_roughness: Option<String>,
+    /// How a code of the roughness map is stored.
+    pub roughness_bits: Option<String>,
+    /// The blocks of texels, if any.
+    pub block_compression: Option<String>,
+    /// The tiles around the input, if it is one of a larger map.
+    pub neighbours: Option<String>,
     /// The channel that was read.
     pub channel: Option<String>,
     /// What the height codes mean.
@@ -269,11 +290,12 @@ impl Totals {
         for outcome in outcomes {
             match FileResult::of(outcome) {
                 FileResult::Baked => totals.baked += 1,
+                FileResult::Fresh => totals.fresh += 1,
                 FileResult::Failed => totals.failed += 1,
                 FileResult::Stopped => totals.stopped += 1,
                 FileResult::NotBegun => totals.not_begun += 1,
             }
-            if let Ok(baked) = &outcome.result {
+            if let Some(baked) = outcome.baked() {
                 totals.texels += baked.size.texels() as u64;
                 totals.bytes_in += outcome.bytes_in;
                 totals.bytes_out += outcome.bytes_out;
@@ -288,6 +310,7 @@ impl FileResult {
     /// What `outcome` amounts to.
     pub fn of<T>(outcome: &Outcome<T>) -> Self {
         match &outcome.result {
+            Ok(_) if outcome.freshness == Some(Freshness::Fresh) => Self::Fresh,
             Ok(_) => Self::Baked,
             Err(Error::Cancelled) if outcome.time.is_none() => Self::NotBegun,
             Err(Error::Cancelled) => Self::Stopped,
@@ -342,6 +365,7 @@ impl FileReport {
             depth: baked.map(|baked| baked.height_type.to_string()),
             scale: scale.map(|s| UsedScale { x: ratio(s.x, s.q), y: ratio(s.y, s.q), exact: s.exact }),
             parallax: ParallaxNumbers::of(job, outcome, iterations),
+            stale: outcome.freshness.as_ref().filter(|it| **it != Freshness::Fresh).map(ToString::to_string),
             run: RunReport::of_maps(
                 outcome,
                 baked.map(|baked| (&baked.ran, baked.size)),
@@ -353,10 +377,13 @@ impl FileReport {
 }
 
 impl Options {
-    fn new(job: &Job, iterations: NonZeroU32) -> Self {
-        let BakeOptions { scale, filter, edges, normal, parallax, precision, .. } = job.options;
-        let read = &job.read;
-        let maps = [normal.map(|_| MapKind::Normal), parallax.map(|_| MapKind::Parallax)];
+    pub(super) fn new(job: &Job, iterations: NonZeroU32) -> Self {
+        // All fields by name, so that none can be forgotten: what stands here decides what is baked again.
+        let BakeOptions { scale, filter, edges, normal, parallax, roughness, precision } = job.options;
+        let ReadOptions { channel, color_space, raw, shrink, max_bytes } = &job.read;
+        let WriteOptions { compression, mips, blocks } = job.write;
+        let kinds = (MapKind::Normal, MapKind::Parallax, MapKind::Roughness);
+        let maps = [normal.map(|_| kinds.0), parallax.map(|_| kinds.1), roughness.map(|_| kinds.2)];
         let maps: Vec<String> = maps.into_iter().flatten().map(|kind| kind.to_string()).collect();
         Self {
             scale: scale.to_string(),
@@ -371,12 +398,18 @@ impl Options {
             parallax_bits: parallax.map(|format| format.depth.to_string()),
             iterations: parallax.map(|_| iterations.get()),
             precision: precision.to_string(),
-            compression: job.write.compression.to_string(),
-            channel: read.channel.as_ref().map(ToString::to_string),
-            color_space: read.color_space.to_string(),
-            raw: read.raw.map(|layout| layout.to_string()),
-            shrink: read.shrink.get(),
-            max_bytes: read.max_bytes,
+            compression: compression.to_string(),
+            mips,
+            roughness_method: roughness.map(|options| options.method.to_string()),
+            base_roughness: roughness.map(|options| options.base.to_string()),
+            roughness_bits: roughness.map(|options| options.format.depth.to_string()),
+            block_compression: blocks.map(|blocks| blocks.to_string()),
+            neighbours: job.neighbours.as_ref().map(ToString::to_string),
+            channel: channel.as_ref().map(ToString::to_string),
+            color_space: color_space.to_string(),
+            raw: raw.map(|layout| layout.to_string()),
+            shrink: shrink.get(),
+            max_bytes: *max_bytes,
         }
     }
 }

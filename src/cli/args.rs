@@ -1,6 +1,7 @@
 //! The command line.
 
-use super::settings::{CodeChoice, Device, FileOutput, HeightInput, NormalOutput, Settings, Slope};
+use super::resources::Resources;
+use super::settings::{CodeChoice, Device, FileOutput, HeightInput, Mips, NormalOutput, Settings, Slope, Tiles};
 use super::values::{ByteSize, MapChoice, WeightPair, choice, iterations, value};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -59,18 +60,28 @@ Examples:
   texbake normal wall.png -o normal.png --filter scharr --convention dx
   texbake normal wall.png -o normal.png --size 2.0x2.0 --depth 0.1 --bits 16
   texbake normal m.tif -o n.png --size 90000x90000 --depth 65535 --edge clamp
-  texbake normal terrain.raw --raw 1025x1025:u16le -o n.tif --edge clamp")]
+  texbake normal terrain.raw --raw 1025x1025:u16le -o n.tif --edge clamp
+  texbake normal wall.png -o normal.ktx2 --block-compression bc5 --mips
+  texbake normal wall.png -o n.dds --mips --roughness r.dds")]
 pub struct NormalArguments {
     /// Height map: PNG, TIFF, EXR, TGA, BMP, JPEG, WebP, or any file with --raw
     #[arg(value_name = "INPUT")]
     pub input: PathBuf,
 
-    /// Normal map: .png, .tif or .exr; missing folders are made
+    /// Normal map: .png, .tif, .exr, .ktx2 or .dds; missing folders are made
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
 
+    /// Roughness map of the mip levels, .ktx2 or .dds, with --mips: what averaging removes of the slopes makes a level
+    /// rougher; the largest level has the base roughness
+    #[arg(long, value_name = "FILE", help_heading = "Mip levels")]
+    pub roughness: Option<PathBuf>,
+
     #[command(flatten)]
     pub settings: Settings,
+
+    #[command(flatten)]
+    pub resources: Resources,
 
     #[command(flatten)]
     pub reporting: Reporting,
@@ -80,7 +91,8 @@ pub struct NormalArguments {
 #[derive(Args, Debug)]
 #[command(after_help = "\
 A PNG has no signed numbers: it holds biased codes, of which 128 (or 32768) is
-exactly zero, and v = (code - 128) / 127. TIFF holds snorm codes, EXR floats.
+exactly zero, and v = (code - 128) / 127. EXR holds floats, the others snorm
+codes.
 In the unorm codes of a given normal map 128 (or 32768) reads as exactly 0.
 
 What a shader needs goes into --json and --report: for each axis
@@ -98,18 +110,18 @@ pub struct ParallaxArguments {
     #[arg(value_name = "INPUT")]
     pub input: PathBuf,
 
-    /// Parallax map: .png, .tif or .exr; missing folders are made
+    /// Parallax map: .png, .tif, .exr, .ktx2 or .dds; missing folders are made
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
 
     #[command(flatten)]
     pub slope: Slope,
 
-    /// How a value becomes a code [default: biased in PNG, snorm in TIFF, float in EXR files]
+    /// How a value becomes a code [default: biased in PNG, snorm in TIFF, KTX2 and DDS, float in EXR files]
     #[arg(long, value_parser = choice::<Encoding>(Encoding::NAMES), help_heading = PARALLAX_MAP)]
     pub encoding: Option<Encoding>,
 
-    /// Bits of a code; f is for float [default: 8 in PNG and TIFF, 32f in EXR files]
+    /// Bits of a code; f is for float [default: 32f in EXR files, else 8]
     #[arg(long, value_parser = choice::<Depth>(Depth::NAMES), help_heading = PARALLAX_MAP)]
     pub bits: Option<Depth>,
 
@@ -124,7 +136,7 @@ pub struct ParallaxArguments {
 
     /// Normal map of the same size that gives n_z, instead of the heights' slopes; --scale is then for the numbers in
     /// --json and --report
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["filter", "edge"], help_heading = GIVEN_NORMALS)]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["filter", "edge", "neighbours"], help_heading = GIVEN_NORMALS)]
     pub normal: Option<PathBuf>,
 
     /// How its codes are read [default: unorm; snorm for signed integers, float for floats]
@@ -138,13 +150,22 @@ pub struct ParallaxArguments {
     pub normal_channels: Option<Channels>,
 
     #[command(flatten)]
+    pub mips: Mips,
+
+    #[command(flatten)]
     pub file: FileOutput,
 
     #[command(flatten)]
     pub heights: HeightInput,
 
     #[command(flatten)]
+    pub tiles: Tiles,
+
+    #[command(flatten)]
     pub device: Device,
+
+    #[command(flatten)]
+    pub resources: Resources,
 
     #[command(flatten)]
     pub reporting: Reporting,
@@ -170,8 +191,8 @@ tex/brick/wall_height_2k.png becomes brick/wall_normal_2k.png.
 Each setting comes from the command line, else from the last [[override]] in
 texbake.toml that has it and whose glob matches the file's path below the
 folder, else from [defaults]. A --format on the command line also takes the
-place of bits and encodings in texbake.toml that it cannot hold. A key is the
-name of an option:
+place of bits, encodings and blocks in texbake.toml that it cannot hold. A key
+is the name of an option:
 
   suffix = [\"_height\", \"_dem\"]
   [defaults]
@@ -185,6 +206,15 @@ name of an option:
 What a shader needs to know of a parallax map goes into the --report; see
 texbake parallax --help.
 
+What was baked is remembered in --out, in the file .texbake-baked: options, and
+BLAKE3 hashes of inputs and outputs. A map is not baked again while all of that
+is as it was; after a kill a run goes on where it stopped. Delete the file, or
+use --force, to bake all.
+
+--watch ends with 130 when it is interrupted (Ctrl-C), with 2 if the settings
+are wrong at the start, and says what fails meanwhile. Where folders send no
+word of changes, as over some networks, run texbake bake again instead.
+
 texbake plan writes a texbake.toml of what a scene needs, with predictions of
 what its maps are off by. --check-plan reads the maps that were baked, measures
 them again, and ends with 1 if a prediction is broken; --check-plan=only bakes
@@ -193,7 +223,10 @@ nothing.
 Examples:
   texbake bake textures --out baked
   texbake bake textures --out baked --maps normal,parallax --scale 24
+  texbake bake textures --out baked --scale 24 --dry-run
+  texbake bake textures --out baked --watch
   texbake bake textures --out baked --convention dx --format tif --bits 16
+  texbake bake textures --out baked --format dds --block-compression bc7
   texbake bake dem_1.tif dem_2.tif --out baked --edge clamp --report r.json")]
 pub struct BakeArguments {
     /// Folders to search, and files
@@ -218,6 +251,18 @@ pub struct BakeArguments {
     #[arg(value_name = "WHEN", help_heading = "Files")]
     pub check_plan: Option<CheckPlan>,
 
+    /// Bake all files, those too whose maps are what they would be
+    #[arg(long, help_heading = "What is baked")]
+    pub force: bool,
+
+    /// Say what would be baked, and why; nothing is written but a --report
+    #[arg(long, help_heading = "What is baked", conflicts_with_all = ["watch", "check_plan"])]
+    pub dry_run: bool,
+
+    /// Go on: bake again when a height map or texbake.toml is saved, or a height map appears, until interrupted
+    #[arg(long, help_heading = "What is baked", conflicts_with = "check_plan")]
+    pub watch: bool,
+
     /// Files baked at the same time, each with its own rows in memory [default: one more than the cores]
     #[arg(short, long, value_name = "N", help_heading = "Where it runs")]
     pub jobs: Option<NonZeroUsize>,
@@ -228,6 +273,9 @@ pub struct BakeArguments {
 
     #[command(flatten)]
     pub each: PerFile,
+
+    #[command(flatten)]
+    pub resources: Resources,
 
     #[command(flatten)]
     pub reporting: Reporting,
@@ -245,12 +293,13 @@ pub enum CheckPlan {
 /// What may differ from file to file in a folder.
 #[derive(Args, Debug, Clone, Default, PartialEq)]
 pub struct PerFile {
-    /// Maps to bake: normal, parallax or normal,parallax; none leaves the file out [default: normal]
+    /// Maps to bake: normal, parallax or both, with roughness for that of mip levels, as normal,roughness; none leaves
+    /// the file out [default: normal]
     #[arg(long, value_delimiter = ',', value_parser = choice::<MapChoice>(MapChoice::NAMES), help_heading = "Files")]
     #[arg(hide_possible_values = true)]
     pub maps: Option<Vec<MapChoice>>,
 
-    /// Output names; {stem} is the input's without suffix, {map} is normal or parallax, {size} the input's _2k or
+    /// Output names; {stem} is the input's without suffix, {map} is normal, parallax or roughness, {size} the input's _2k or
     /// nothing [default: {stem}_{map}{size}]
     #[arg(long, value_name = "TEMPLATE", value_parser = value::<NameTemplate>, help_heading = "Files")]
     pub name: Option<NameTemplate>,
@@ -259,12 +308,13 @@ pub struct PerFile {
     #[arg(long, value_parser = OUTPUT_EXTENSIONS, help_heading = "Files")]
     pub format: Option<String>,
 
-    /// How a value of a parallax map becomes a code [default: biased in PNG (128 is zero), snorm in TIFF, float in EXR]
+    /// How a value of a parallax map becomes a code [default: biased in PNG (128 is zero), float in EXR, else
+    /// snorm]
     #[arg(long, value_name = "ENCODING", value_parser = choice::<Encoding>(Encoding::NAMES))]
     #[arg(help_heading = PARALLAX_MAP)]
     pub parallax_encoding: Option<Encoding>,
 
-    /// Bits of a code of a parallax map [default: 8 in PNG and TIFF, 32f in EXR files]
+    /// Bits of a code of a parallax map [default: 32f in EXR files, else 8]
     #[arg(long, value_name = "BITS", value_parser = choice::<Depth>(Depth::NAMES), help_heading = PARALLAX_MAP)]
     pub parallax_bits: Option<Depth>,
 
@@ -273,8 +323,8 @@ pub struct PerFile {
 }
 
 impl PerFile {
-    /// These settings, and those of `weaker` where these say nothing; a format here leaves no encoding and bits from
-    /// there that it cannot hold.
+    /// These settings, and those of `weaker` where these say nothing; a format here leaves no encoding, bits and blocks
+    /// from there that it cannot hold.
     pub fn or(self, weaker: &Self) -> Self {
         let weaker = &match &self.format {
             Some(format) => weaker.held_by(format),
@@ -296,7 +346,9 @@ impl PerFile {
         let output = Path::new("map").with_extension(format);
         let CodeChoice { encoding, bits } = self.parallax().held_by(&output);
         let normal = self.settings.normal.held_by(&output);
-        let settings = Settings { normal, ..self.settings.clone() };
+        let file = self.settings.file.held_by(&output);
+        let mips = self.settings.mips.held_by(&output);
+        let settings = Settings { normal, file, mips, ..self.settings.clone() };
         Self { parallax_encoding: encoding, parallax_bits: bits, settings, ..self.clone() }
     }
 
@@ -344,7 +396,7 @@ pub struct BlendArguments {
     #[arg(value_name = "DETAIL")]
     pub detail: PathBuf,
 
-    /// Blended normal map: .png, .tif or .exr; missing folders are made
+    /// Blended normal map: .png, .tif, .exr, .ktx2 or .dds; missing folders are made
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
 
@@ -362,6 +414,9 @@ pub struct BlendArguments {
 
     #[command(flatten)]
     pub device: Device,
+
+    #[command(flatten)]
+    pub resources: Resources,
 
     #[command(flatten)]
     pub reporting: Reporting,

@@ -2,10 +2,10 @@
 
 use super::args::{BlendArguments, Formula, Method};
 use super::exit::{Exit, Failure};
-use super::interruptible;
 use super::print::{blend_line, say};
 use super::progress::{Ending, Progress, Verbosity, fallback};
 use super::settings::{max_bytes, open_baker};
+use super::stopped_by_interrupts;
 use super::values::WeightPair;
 use clap::ValueEnum;
 use std::sync::Arc;
@@ -14,6 +14,7 @@ use texbake::io::{NormalReadOptions, ReadOptions};
 use texbake::{BlendMethod, BlendOptions, Convention, Error, Result as BakeResult, Weights};
 
 pub fn blend(arguments: &BlendArguments) -> Result<Exit, Failure> {
+    arguments.resources.start_threads()?;
     let (reporting, method) = (&arguments.reporting, arguments.formula.method());
     let job = job(arguments, method)?;
     let files = job.files();
@@ -21,7 +22,7 @@ pub fn blend(arguments: &BlendArguments) -> Result<Exit, Failure> {
     let report_file = report_file.map(|path| JsonFile::create("report", path, std::slice::from_ref(&files), None));
     let report_file = report_file.transpose()?;
 
-    let monitor = interruptible();
+    let monitor = stopped_by_interrupts(arguments.resources.monitor()?);
     let progress = Progress::new(&[&job.base.path], &monitor, Verbosity::of(reporting, Verbosity::Warnings));
     let blended = progress.during(|| job.run(&monitor, &|size| progress.opened(0, size)));
     let outcome = &blended.outcome;
@@ -42,7 +43,7 @@ pub fn blend(arguments: &BlendArguments) -> Result<Exit, Failure> {
         file.write(&BlendReport::new(&job, &name, &blended))?;
     }
     Ok(match FileResult::of(outcome) {
-        FileResult::Baked => Exit::Success,
+        FileResult::Baked | FileResult::Fresh => Exit::Success,
         FileResult::Failed => Exit::Failed,
         FileResult::Stopped | FileResult::NotBegun => {
             say(format_args!("{} was not written", arguments.output.display()));
@@ -53,10 +54,11 @@ pub fn blend(arguments: &BlendArguments) -> Result<Exit, Failure> {
 
 fn job(arguments: &BlendArguments, method: Method) -> Result<BlendJob, Failure> {
     let (formula, inputs) = (&arguments.formula, &arguments.inputs);
+    let write = arguments.file.write();
     let options = BlendOptions {
         method: formula.formula(method)?,
         tile: formula.tile,
-        format: arguments.normal.format(&arguments.output)?,
+        format: arguments.normal.format(&arguments.output, &write)?,
         precision: formula.precision.unwrap_or_default(),
     };
     let max_bytes = max_bytes(inputs.max_bytes);
@@ -75,7 +77,7 @@ fn job(arguments: &BlendArguments, method: Method) -> Result<BlendJob, Failure> 
         mask: formula.mask.clone().map(|path| MaskInput { path, read: mask() }),
         output: arguments.output.clone(),
         options,
-        write: arguments.file.write(),
+        write,
         baker: Arc::new(open_baker(&arguments.device.place()?)?),
     })
 }

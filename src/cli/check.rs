@@ -98,7 +98,7 @@ pub struct RepairArguments {
     #[arg(long, requires = "output", help_heading = REPAIR)]
     pub repair: bool,
 
-    /// Repaired map: .png, .tif or .exr; missing folders are made
+    /// Repaired map: .png, .tif, .exr, .ktx2 or .dds; missing folders are made
     #[arg(short, long, value_name = "FILE", requires = "repair", help_heading = REPAIR)]
     pub output: Option<PathBuf>,
 

@@ -30,7 +30,8 @@ struct Override {
     settings: PerFile,
 }
 
-const NAME: &str = "texbake.toml";
+/// What a settings file is called where none is named.
+pub const SETTINGS_NAME: &str = "texbake.toml";
 
 /// The most bytes of a settings file: thousands of overrides. One may lie in a folder that somebody else made.
 const MOST_BYTES: u64 = 1 << 20;
@@ -42,7 +43,8 @@ impl Config {
     /// [`Error::Io`], or [`Error::File`] with file and line.
     pub fn find(given: Option<&Path>, paths: &[PathBuf]) -> Result<Option<Self>> {
         let first_folder = paths.iter().find(|path| path.is_dir());
-        let usual = first_folder.map(|folder| folder.join(NAME)).into_iter().chain([PathBuf::from(NAME)]);
+        let usual =
+            first_folder.map(|folder| folder.join(SETTINGS_NAME)).into_iter().chain([PathBuf::from(SETTINGS_NAME)]);
         let path = given.map(Path::to_owned).or_else(|| usual.into_iter().find(|path| path.is_file()));
         let Some(path) = path else { return Ok(None) };
         let io = |source| Error::Io { path: path.clone(), source };
@@ -150,15 +152,16 @@ impl Source<'_> {
     /// `--scale=7/3` for `scale = "7/3"`, `--maps=normal,parallax` for `maps = ["normal", "parallax"]`.
     fn argument(&self, key: &Spanned<std::borrow::Cow<'_, str>>, value: &Spanned<DeValue<'_>>) -> Result<String> {
         let command = parser();
-        let mut options = command.get_arguments().filter_map(|option| option.get_long());
         let name = key.get_ref();
-        if !options.any(|option| option == name) {
+        let Some(option) = command.get_arguments().find(|option| option.get_long() == Some(name)) else {
             let known: Vec<_> = command.get_arguments().filter_map(|option| option.get_long()).collect();
             let remedy = format!("the settings are {}", known.join(", "));
             return Err(self.error(key.span().start, format!("{name} is no setting"), remedy));
-        }
+        };
+        let is_switch = option.get_possible_values().iter().any(|value| value.get_name() == "true");
         let texts: Option<Vec<String>> = match value.get_ref() {
             DeValue::Array(values) => values.iter().map(plain_text).collect(),
+            DeValue::Boolean(value) if is_switch => Some(vec![value.to_string()]),
             _ => plain_text(value).map(|text| vec![text]),
         };
         let text = texts.filter(|texts| !texts.is_empty()).map(|texts| texts.join(","));
@@ -210,7 +213,7 @@ fn plain_text(value: &Spanned<DeValue<'_>>) -> Option<String> {
 
 /// The options of one file, without anything else.
 fn parser() -> Command {
-    let command = Command::new(NAME).no_binary_name(true).disable_help_flag(true).disable_version_flag(true);
+    let command = Command::new(SETTINGS_NAME).no_binary_name(true).disable_help_flag(true).disable_version_flag(true);
     PerFile::augment_args(command)
 }
 

@@ -16,12 +16,14 @@ mod plan;
 mod preview;
 mod print;
 mod progress;
+mod resources;
 mod settings;
 mod shaders;
 mod single;
 mod tangents;
 mod values;
 mod verify;
+mod watch;
 
 use args::{Arguments, Command};
 use clap::Parser;
@@ -72,7 +74,12 @@ fn survive_large_files() {
 
 /// A monitor that an interrupt cancels: files that are being written end cleanly. A second interrupt ends the program.
 fn interruptible() -> Arc<Monitor> {
-    let monitor = Arc::new(Monitor::default());
+    stopped_by_interrupts(Monitor::default())
+}
+
+/// As [`interruptible`], for a monitor that is there.
+fn stopped_by_interrupts(monitor: Monitor) -> Arc<Monitor> {
+    let monitor = Arc::new(monitor);
     let watched = monitor.clone();
     let stop = move || {
         if watched.is_cancelled() {

@@ -10,19 +10,23 @@ use texbake::batch::{Job, NormalInput};
 use texbake::io::NormalReadOptions;
 
 pub fn parallax(arguments: &ParallaxArguments) -> Result<Exit, Failure> {
-    let options = arguments.slope.bake(None, Some(arguments.codes().parallax(&arguments.output)?))?;
+    arguments.resources.start_threads()?;
+    let write = arguments.mips.write(arguments.file.write());
+    let format = arguments.codes().parallax(&arguments.output, &write)?;
+    let options = arguments.slope.bake(None, Some(format), None)?;
     let job = Job {
         input: arguments.input.clone(),
         outputs: Maps { parallax: Some(arguments.output.clone()), ..Maps::default() },
         normals: given_normals(arguments),
+        neighbours: arguments.tiles.around(&arguments.input, &options)?,
         read: arguments.heights.read(),
         options,
-        write: arguments.file.write(),
+        write,
         baker: Arc::new(open_baker(&arguments.device.place()?)?),
     };
     let sidecar = arguments.json.then(|| arguments.output.with_extension("json"));
     let telling = ParallaxTelling { iterations: arguments.iterations, sidecar: sidecar.as_deref() };
-    bake_one(job, &telling, &arguments.reporting)
+    bake_one(job, &telling, &arguments.resources, &arguments.reporting)
 }
 
 /// The normal map that was given; n_z does not depend on which way its green points.

@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 use std::thread::JoinHandle;
 use texbake::batch::{
-    BlendJob, BlendOutcome, FileResult, Job, ModelTangents, Outcome, ParallaxNumbers, Report, TangentJob,
-    describe_codes,
+    BlendJob, BlendOutcome, FileResult, Freshness, Job, ModelTangents, Outcome, ParallaxNumbers, Reason, Report,
+    TangentJob, describe_codes,
 };
 use texbake::measure::digits;
 use texbake::verify::{Agreement, Comparison, Errors};
@@ -238,7 +238,11 @@ pub fn file_table(jobs: &[Job], outcomes: &[Outcome], left_out: &[String]) -> St
     if jobs.len() + left_out.len() <= TABLE_ROWS {
         return rows_of(files(), left_out);
     }
-    let (mut baked, unbaked): (Vec<_>, Vec<_>) = files().partition(|(_, outcome)| outcome.result.is_ok());
+    let worked_on = files().filter(|(_, outcome)| FileResult::of(outcome) != FileResult::Fresh);
+    let (mut baked, unbaked): (Vec<_>, Vec<_>) = worked_on.partition(|(_, outcome)| outcome.result.is_ok());
+    if baked.is_empty() && unbaked.is_empty() {
+        return format!("of {} files all fresh", jobs.len());
+    }
     baked.sort_by_key(|(_, outcome)| Reverse(outcome.time));
     baked.truncate(SLOWEST);
     let what = match (unbaked.len(), baked.len()) {
@@ -258,6 +262,7 @@ fn rows_of<'a>(files: impl Iterator<Item = (&'a Job, &'a Outcome)>, left_out: &[
         let time = outcome.time.map_or(String::new(), |time| format!("{:.1}", time.as_secs_f64() * 1e3));
         let result = match FileResult::of(outcome) {
             FileResult::Baked => "baked".to_owned(),
+            FileResult::Fresh => "fresh".to_owned(),
             FileResult::Failed => "failed".to_owned(),
             FileResult::Stopped => "stopped".to_owned(),
             FileResult::NotBegun => "not begun".to_owned(),
@@ -277,6 +282,7 @@ pub fn summary(report: &Report, jobs: &[Job], outcomes: &[Outcome]) -> String {
     let totals = &report.totals;
     let mut counts = vec![format!("{} of {} files baked", totals.baked, totals.files)];
     for (count, what) in [
+        (totals.fresh, "fresh"),
         (totals.failed, "failed"),
         (totals.stopped, "stopped"),
         (totals.not_begun, "not begun"),
@@ -287,8 +293,7 @@ pub fn summary(report: &Report, jobs: &[Job], outcomes: &[Outcome]) -> String {
         }
     }
     let mut places: Vec<String> = Vec::new();
-    for (job, Baked { ran, .. }) in
-        jobs.iter().zip(outcomes).filter_map(|(job, outcome)| Some((job, outcome.result.as_ref().ok()?)))
+    for (job, Baked { ran, .. }) in jobs.iter().zip(outcomes).filter_map(|(job, outcome)| Some((job, outcome.baked()?)))
     {
         let reason = ran.fallback.as_deref().unwrap_or(job.baker.reason());
         let place = format!("{} ({reason})", ran.name());
@@ -310,6 +315,28 @@ pub fn summary(report: &Report, jobs: &[Job], outcomes: &[Outcome]) -> String {
         line += &place;
     }
     line
+}
+
+/// What would become of each file of a folder, and why.
+pub fn plan_table(jobs: &[Job], plan: &[Freshness]) -> String {
+    let line = |(job, freshness): (&Job, &Freshness)| {
+        let files = format!("{} -> {}", job.input.display(), outputs(job));
+        match freshness {
+            Freshness::Fresh => format!("fresh {files}"),
+            Freshness::Stale(Reason::Refused(reason)) => format!("fail {files}: {reason}"),
+            Freshness::Stale(reason) => format!("bake {files}: {reason}"),
+        }
+    };
+    let count = |is: fn(&Freshness) -> bool| plan.iter().filter(|freshness| is(freshness)).count();
+    let fresh = count(|it| *it == Freshness::Fresh);
+    let refused = count(|it| matches!(it, Freshness::Stale(Reason::Refused(_))));
+    let mut summary = format!("{} of {} files would be baked", plan.len() - fresh - refused, plan.len());
+    for (count, what) in [(fresh, "fresh"), (refused, "would fail")] {
+        if count > 0 {
+            summary += &format!(", {count} {what}");
+        }
+    }
+    jobs.iter().zip(plan).map(line).chain([summary]).collect::<Vec<_>>().join("\n")
 }
 
 /// What could run bakes.

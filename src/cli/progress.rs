@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
-use texbake::batch::{Event, Job};
+use texbake::batch::{Event, Freshness, Job};
 use texbake::stream::Monitor;
 use texbake::{Ran, Size};
 
@@ -18,6 +18,8 @@ pub struct Progress<'a> {
     verbosity: Verbosity,
     bar: Option<ProgressBar>,
     start: Instant,
+    /// Texels that the monitor counted before.
+    texels_before: u64,
     state: Mutex<State>,
 }
 
@@ -73,7 +75,7 @@ impl<'a> Progress<'a> {
         let bytes = if shows_bar { inputs.iter().map(bytes).collect() } else { vec![0; inputs.len()] };
         let state = Mutex::new(State { ended: 0, bytes, texels: vec![None; inputs.len()] });
         let bar = shows_bar.then(bar);
-        Self { monitor, verbosity, bar, start: Instant::now(), state }
+        Self { monitor, verbosity, bar, start: Instant::now(), texels_before: monitor.texels(), state }
     }
 
     /// Does `work` while the bar moves.
@@ -98,6 +100,7 @@ impl<'a> Progress<'a> {
     pub fn watch(&self, jobs: &[Job], event: Event<'_>) {
         match event {
             Event::Opened { job, size } => self.opened(job, size),
+            Event::Ended { job: index, outcome } if outcome.freshness == Some(Freshness::Fresh) => self.passed(index),
             Event::Ended { job: index, outcome } => {
                 let job = &jobs[index];
                 let ran = outcome.result.as_ref().ok().map(|baked| &baked.ran);
@@ -117,6 +120,13 @@ impl<'a> Progress<'a> {
     /// Takes note of the size of an input.
     pub fn opened(&self, index: usize, size: Size) {
         self.state().texels[index] = Some(size.texels() as u64);
+    }
+
+    /// Takes note of an input that needs no work.
+    fn passed(&self, index: usize) {
+        let mut state = self.state();
+        state.ended += 1;
+        (state.bytes[index], state.texels[index]) = (0, Some(0));
     }
 
     /// Takes note of the end of the work on an input, and says so.
@@ -146,7 +156,7 @@ impl<'a> Progress<'a> {
 
     fn redraw(&self, bar: &ProgressBar) {
         let state = self.state();
-        let done = self.monitor.texels();
+        let done = self.monitor.texels().saturating_sub(self.texels_before);
         let rate = done as f64 / 1e6 / self.start.elapsed().as_secs_f64();
         bar.set_length(state.expected_texels().max(done));
         bar.set_position(done);

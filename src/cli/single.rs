@@ -2,9 +2,10 @@
 
 use super::args::Reporting;
 use super::exit::{Exit, Failure};
-use super::interruptible;
 use super::print::{bake_line, parallax_line, say};
 use super::progress::{Progress, Verbosity};
+use super::resources::Resources;
+use super::stopped_by_interrupts;
 use std::num::NonZeroU32;
 use std::path::Path;
 use std::time::Instant;
@@ -19,7 +20,12 @@ pub struct ParallaxTelling<'a> {
 }
 
 /// Bakes one file, and says how it went.
-pub fn bake_one(job: Job, telling: &ParallaxTelling<'_>, reporting: &Reporting) -> Result<Exit, Failure> {
+pub fn bake_one(
+    job: Job,
+    telling: &ParallaxTelling<'_>,
+    resources: &Resources,
+    reporting: &Reporting,
+) -> Result<Exit, Failure> {
     let jobs = [job];
     let mut files = Job::all_files(&jobs);
     let create = |path| {
@@ -31,7 +37,7 @@ pub fn bake_one(job: Job, telling: &ParallaxTelling<'_>, reporting: &Reporting) 
     let report_file = reporting.report.as_deref().map(|path| JsonFile::create("report", path, &files, None));
     let report_file = report_file.transpose()?;
 
-    let monitor = interruptible();
+    let monitor = stopped_by_interrupts(resources.monitor()?);
     let progress = Progress::new(&[&jobs[0].input], &monitor, Verbosity::of(reporting, Verbosity::Warnings));
     let start = Instant::now();
     let outcomes = progress.during(|| run(&jobs, 1, &monitor, &|event| progress.watch(&jobs, event)));

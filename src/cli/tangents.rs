@@ -151,7 +151,7 @@ pub fn tangents(arguments: &TangentsArguments) -> Result<Exit, Failure> {
         file.write(&ModelTangentsReport::new(&job, &outcome))?;
     }
     Ok(match FileResult::of(&outcome) {
-        FileResult::Baked => Exit::Success,
+        FileResult::Baked | FileResult::Fresh => Exit::Success,
         FileResult::Failed => Exit::Failed,
         FileResult::Stopped | FileResult::NotBegun => {
             say(format_args!("{} was not written", job.output.display()));

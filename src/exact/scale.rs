@@ -91,6 +91,24 @@ impl Scale {
         shrunk.map(Self::Texels).ok_or_else(too_long)
     }
 
+    /// The same heights over a map of other sides with the same texels, of which one of size `from` was given.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a physical size with too many digits.
+    pub(crate) fn over(self, from: Size, to: Size) -> Result<Self> {
+        let Self::Physical { size: [width, height], depth } = self else { return Ok(self) };
+        let side = |side: Rational, from: usize, to: usize| {
+            let above = side.numerator().checked_mul(to as i64);
+            let parts = above.zip(side.denominator().checked_mul(from as i64));
+            let longer = parts.and_then(|(above, below)| Rational::new(above, below).ok());
+            longer.ok_or_else(|| Error::parameter("size", side, "a number of fewer digits, with neighbours"))
+        };
+        Ok(Self::Physical {
+            size: [side(width, from.width(), to.width())?, side(height, from.height(), to.height())?],
+            depth,
+        })
+    }
+
     /// The scale of each axis for a map of this size, in texels.
     ///
     /// A number that needs a part of 2^24 or more becomes the nearest ratio that does not

@@ -264,6 +264,10 @@ impl RowSource for HeightRows {
         Ok(())
     }
 
+    fn skip(&mut self, rows: usize) -> Result<()> {
+        self.seek(self.next_row + rows)
+    }
+
     fn read_last_row(&mut self, mut row: HeightsMut<'_>) -> Result<()> {
         self.seek(self.layout.size.height() - 1)?;
         self.read(part_mut(&mut row, 0..self.layout.size.width()))?;

@@ -1,6 +1,7 @@
 //! File formats: by their first bytes, and by their extension.
 
 use super::input;
+use super::texture::Container;
 use crate::error::{Error, Result};
 use crate::map::{Depth, Encoding, ParallaxFormat};
 use image::ImageFormat;
@@ -23,6 +24,7 @@ pub(super) enum OutputFormat {
     Png,
     Tiff,
     Exr,
+    Texture(Container),
 }
 
 /// The usual extensions of the formats that are read, in lower case; the last three are those of headerless files.
@@ -33,7 +35,7 @@ const KNOWN_INPUTS: &str =
     "texbake reads PNG, TIFF, EXR, TGA, BMP, JPEG and WebP, and headerless height maps with --raw";
 const FOR_MODELS: &str = "models are for texbake tangents; the other commands take maps";
 const MODEL_EXTENSIONS: [&str; 3] = ["glb", "gltf", "obj"];
-const KNOWN_OUTPUTS: &str = "texbake writes .png, .tif, .tiff and .exr";
+const KNOWN_OUTPUTS: &str = "texbake writes .png, .tif, .tiff, .exr, .ktx2 and .dds";
 
 impl FileFormat {
     /// The format of an existing file, by its first bytes, then by its extension.
@@ -76,34 +78,36 @@ impl OutputFormat {
             "png" => Ok(Self::Png),
             "tif" | "tiff" => Ok(Self::Tiff),
             "exr" => Ok(Self::Exr),
+            "ktx2" => Ok(Self::Texture(Container::Ktx2)),
+            "dds" => Ok(Self::Texture(Container::Dds)),
             "" => Err(Error::file(path, "it has no extension, which picks the format", KNOWN_OUTPUTS)),
             other => Err(Error::file(path, format!("the extension .{other} is unknown"), KNOWN_OUTPUTS)),
         }
     }
 }
 
-/// The encoding and depth that the extension of an output suggests: 8-bit unorm for PNG, 16-bit unorm for TIFF, 32-bit
-/// float for EXR.
+/// The encoding and depth that the extension of an output suggests: 8-bit unorm for PNG, KTX2 and DDS, 16-bit unorm for
+/// TIFF, 32-bit float for EXR.
 ///
 /// # Errors
 /// [`Error::File`] lists the known extensions if this is none of them.
 pub fn default_format(path: &Path) -> Result<(Encoding, Depth)> {
     Ok(match OutputFormat::of(path)? {
-        OutputFormat::Png => (Encoding::Unorm, Depth::Bits8),
+        OutputFormat::Png | OutputFormat::Texture(_) => (Encoding::Unorm, Depth::Bits8),
         OutputFormat::Tiff => (Encoding::Unorm, Depth::Bits16),
         OutputFormat::Exr => (Encoding::Float, Depth::Float32),
     })
 }
 
 /// The format of a parallax map that the extension of an output suggests: 8-bit biased for PNG, which has no signed
-/// numbers, 8-bit snorm for TIFF, 32-bit float for EXR.
+/// numbers, 8-bit snorm for TIFF, KTX2 and DDS, 32-bit float for EXR.
 ///
 /// # Errors
 /// [`Error::File`] lists the known extensions if this is none of them.
 pub fn default_parallax_format(path: &Path) -> Result<ParallaxFormat> {
     let (encoding, depth) = match OutputFormat::of(path)? {
         OutputFormat::Png => (Encoding::Biased, Depth::Bits8),
-        OutputFormat::Tiff => (Encoding::Snorm, Depth::Bits8),
+        OutputFormat::Tiff | OutputFormat::Texture(_) => (Encoding::Snorm, Depth::Bits8),
         OutputFormat::Exr => (Encoding::Float, Depth::Float32),
     };
     Ok(ParallaxFormat { encoding, depth })

@@ -13,11 +13,13 @@
 //! does not keep it; and folders that several machines write into at once over a network without common locks.
 
 mod channel;
+mod crop;
 mod damage;
 mod exr;
 mod format;
 mod gltf;
 mod groups;
+mod halo;
 mod input;
 mod limits;
 mod normal;
@@ -32,17 +34,21 @@ mod shrink;
 mod sink;
 mod srgb;
 mod temporary;
+mod texture;
 mod tiff;
 mod write;
 
 pub use channel::Channel;
+pub(crate) use crop::Cropped;
 pub use format::{INPUT_EXTENSIONS, default_format, default_parallax_format};
 pub use gltf::{LeftOut, Model, ModelFile, ModelFiles, ModelReadOptions, ModelReport, Placement, Primitive};
+pub(crate) use halo::{Halo, HaloRows, Reach, TileRow};
 pub use parallax::ParallaxReadOptions;
 pub use raw::{RawKind, RawLayout};
+pub use texture::BlockCompression;
 pub use write::{
-    Compression, WriteOptions, check_normal_format, check_parallax_format, create_normals, create_normals_with,
-    create_parallax, create_parallax_with,
+    Compression, WriteOptions, check_normal_format, check_normals_with, check_parallax_format, check_parallax_with,
+    check_roughness, create_normals, create_normals_with, create_parallax, create_parallax_with, create_roughness_with,
 };
 
 use crate::error::Result;

@@ -109,6 +109,10 @@ impl NormalSource for NormalRows {
         self.next_row += count / row_codes;
         Ok(())
     }
+
+    fn held_bytes(&self) -> u64 {
+        self.samples.held_bytes() + self.interleaved.bytes()
+    }
 }
 
 /// What the codes of a file mean; `asked` must be possible for its samples.

@@ -10,7 +10,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::path::Path;
 
-/// Opens and decodes a file.
+/// Opens a file, which is decoded when its first row is asked for.
 pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<Opened> {
     let file = input::open(path)?;
     // The decoders of these two hold the stored bytes, and read them before anything else can be asked.
@@ -28,11 +28,7 @@ pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<O
         _ => false,
     };
     file.rewind().map_err(Error::io(path))?;
-    let mut reader = ImageReader::with_format(file, format);
-    let mut decoder_limits = Limits::no_limits();
-    decoder_limits.max_alloc = Some(max_bytes);
-    reader.limits(decoder_limits);
-    let mut decoder = reader.into_decoder().map_err(reason(path))?;
+    let mut decoder = decoder(path, file, format, max_bytes)?;
 
     let (width, height) = decoder.dimensions();
     let size = limits::size(path, width.into(), height.into())?;
@@ -49,13 +45,35 @@ pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<O
     };
     let layout = Layout { size, depth: HeightType::U8, colours, alpha };
     let profile = decoder.icc_profile().unwrap_or_default().unwrap_or_default();
-    let mut samples = vec![0; layout.row_bytes() * size.height()];
+    let whole = {
+        let path = path.to_owned();
+        DecodedWhole::new(layout, held, move || decode(&path, format, layout, max_bytes))
+    };
+    Ok(Opened { says_srgb: srgb::is_named_by(&profile), lossy, ..Opened::new(whole) })
+}
+
+fn decoder(
+    path: &Path,
+    file: BufReader<File>,
+    format: ImageFormat,
+    max_bytes: u64,
+) -> Result<impl ImageDecoder + use<>> {
+    let mut reader = ImageReader::with_format(file, format);
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(max_bytes);
+    reader.limits(limits);
+    reader.into_decoder().map_err(reason(path))
+}
+
+/// The samples of a file, which is opened anew: a decoder that waits would hold the stored bytes.
+fn decode(path: &Path, format: ImageFormat, layout: Layout, max_bytes: u64) -> Result<Samples> {
+    let decoder = decoder(path, BufReader::new(input::open(path)?), format, max_bytes)?;
+    let mut samples = vec![0; layout.row_bytes() * layout.size.height()];
     if decoder.total_bytes() != samples.len() as u64 {
         return Err(damaged(path, "its rows do not have the length that its header says"));
     }
     decoder.read_image(&mut samples).map_err(reason(path))?;
-    let whole = DecodedWhole::new(layout, Samples::U8(samples));
-    Ok(Opened { says_srgb: srgb::is_named_by(&profile), lossy, ..Opened::new(whole) })
+    Ok(Samples::U8(samples))
 }
 
 /// Whether an end-of-image marker follows the last start-of-scan marker; coded data holds neither (ITU T.81, B.1.1.5).

@@ -68,10 +68,13 @@ pub(super) enum Samples {
     F32(Vec<f32>),
 }
 
-/// A file that is decoded whole.
+/// A file that is decoded whole when its first row is asked for: one that waits for its turn holds nothing.
 pub(super) struct DecodedWhole {
     layout: Layout,
-    samples: Samples,
+    /// Bytes that the decoder holds besides the samples.
+    beside: u64,
+    decode: Box<dyn FnMut() -> Result<Samples> + Send>,
+    samples: Option<Samples>,
     next_row: usize,
 }
 
@@ -144,8 +147,9 @@ impl Samples {
 }
 
 impl DecodedWhole {
-    pub fn new(layout: Layout, samples: Samples) -> Self {
-        Self { layout, samples, next_row: 0 }
+    /// The samples of `layout` that `decode` gives; it holds `beside` more bytes.
+    pub fn new(layout: Layout, beside: u64, decode: impl FnMut() -> Result<Samples> + Send + 'static) -> Self {
+        Self { layout, beside, decode: Box::new(decode), samples: None, next_row: 0 }
     }
 }
 
@@ -155,9 +159,13 @@ impl SampleRows for DecodedWhole {
     }
 
     fn read(&mut self, mut rows: HeightsMut<'_>) -> Result<()> {
-        let count = len(&rows);
-        let from = self.next_row * self.layout.per_row();
-        copy(part(self.samples.as_ref(), from..from + count), &mut rows);
+        let samples = match self.samples.take() {
+            Some(samples) => samples,
+            None => (self.decode)()?,
+        };
+        let (count, from) = (len(&rows), self.next_row * self.layout.per_row());
+        copy(part(samples.as_ref(), from..from + count), &mut rows);
+        self.samples = Some(samples);
         self.next_row += count / self.layout.per_row();
         Ok(())
     }
@@ -172,7 +180,7 @@ impl SampleRows for DecodedWhole {
     }
 
     fn held_bytes(&self) -> u64 {
-        self.samples.bytes()
+        (self.layout.row_bytes() * self.layout.size.height()) as u64 + self.beside
     }
 }
 

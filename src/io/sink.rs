@@ -3,7 +3,7 @@
 use super::replace::Replacement;
 use crate::error::{Error, Result};
 use crate::map::{CodesRef, Depth, Size, TexelFormat};
-use crate::stream::RowSink;
+use crate::stream::{LevelSink, RowSink};
 use std::path::Path;
 
 /// Writes one file format.
@@ -11,8 +11,16 @@ pub(super) trait RowEncoder: Send {
     /// Whether row 0 may come after all others.
     fn takes_first_row_last(&self) -> bool;
 
+    /// Bytes that are held at most while `rows` rows at once are written.
+    fn held_bytes(&self, rows: usize) -> u64;
+
     /// Writes whole rows from row `first` on, all of the depth that the file was created with.
     fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()>;
+
+    /// What takes the rows of the smaller mip levels; `None` if the file has one level, or it was asked for before.
+    fn levels(&mut self) -> Option<Box<dyn LevelSink>> {
+        None
+    }
 
     /// Writes what follows the last row.
     fn finish(self: Box<Self>) -> Result<()>;
@@ -23,6 +31,11 @@ pub(super) struct FileSink {
     /// `None` once the file is complete.
     encoder: Option<Box<dyn RowEncoder>>,
     replacement: Replacement,
+    expected: ExpectedRows,
+}
+
+/// The rows of a map, or of a mip level, that are still to come: from the top, but that row 0 may come last.
+pub(super) struct ExpectedRows {
     depth: Depth,
     row_codes: usize,
     height: usize,
@@ -40,21 +53,26 @@ impl FileSink {
         size: Size,
         format: TexelFormat,
     ) -> Box<dyn RowSink> {
-        let row_codes = format.row_codes(size.width());
-        let (depth, height) = (format.depth, size.height());
+        let expected = ExpectedRows::new(size.width(), size.height(), format);
         let encoder: Option<Box<dyn RowEncoder>> = Some(Box::new(encoder));
-        Box::new(Self { encoder, replacement, depth, row_codes, height, next_row: Some(0), first_row_left: false })
+        Box::new(Self { encoder, replacement, expected })
     }
 }
 
-impl RowSink for FileSink {
-    fn takes_first_row_last(&self) -> bool {
-        self.encoder.as_ref().is_some_and(|encoder| encoder.takes_first_row_last())
+impl ExpectedRows {
+    /// `height` rows of `width` texels.
+    pub fn new(width: usize, height: usize, format: TexelFormat) -> Self {
+        let row_codes = format.row_codes(width);
+        Self { depth: format.depth, row_codes, height, next_row: Some(0), first_row_left: false }
     }
 
-    fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
+    /// How many rows these are.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless they are whole rows of the depth, and come next.
+    pub fn check(&mut self, first: usize, rows: CodesRef<'_>, takes_first_row_last: bool) -> Result<usize> {
         let (count, depth) = (rows.len() / self.row_codes, rows.depth());
-        let starts_late = self.next_row == Some(0) && first == 1 && self.takes_first_row_last();
+        let starts_late = self.next_row == Some(0) && first == 1 && takes_first_row_last;
         if starts_late {
             (self.next_row, self.first_row_left) = (Some(1), true);
         }
@@ -66,19 +84,45 @@ impl RowSink for FileSink {
             let range = format!("whole rows of {} codes of depth {}, {next}", self.row_codes, self.depth);
             return Err(Error::parameter("rows", given, range));
         }
-        let written = self.encoder.as_mut().map_or(Ok(()), |encoder| encoder.write(first, rows));
-        self.replacement.check()?;
-        written?;
+        Ok(count)
+    }
+
+    /// Expects what follows these rows, which are written.
+    pub fn advance(&mut self, first: usize, count: usize) {
+        let end = if first == 0 && self.first_row_left { 1 } else { self.height };
         self.next_row = match first + count {
             next if next < end => Some(next),
             _ if self.first_row_left && first > 0 => Some(0),
             _ => None,
         };
+    }
+}
+
+impl RowSink for FileSink {
+    fn held_bytes(&self, rows: usize) -> u64 {
+        self.encoder.as_ref().map_or(0, |encoder| encoder.held_bytes(rows))
+    }
+
+    fn takes_first_row_last(&self) -> bool {
+        self.encoder.as_ref().is_some_and(|encoder| encoder.takes_first_row_last())
+    }
+
+    fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
+        let takes_first_row_last = self.takes_first_row_last();
+        let count = self.expected.check(first, rows, takes_first_row_last)?;
+        let written = self.encoder.as_mut().map_or(Ok(()), |encoder| encoder.write(first, rows));
+        self.replacement.check()?;
+        written?;
+        self.expected.advance(first, count);
         Ok(())
     }
 
+    fn levels(&mut self) -> Option<Box<dyn LevelSink>> {
+        self.encoder.as_mut()?.levels()
+    }
+
     fn complete(&mut self) -> Result<()> {
-        if let Some(row) = self.next_row {
+        if let Some(row) = self.expected.next_row {
             return Err(Error::parameter("rows", format_args!("without row {row}"), "complete"));
         }
         let finished = self.encoder.take().map_or(Ok(()), |encoder| encoder.finish());
@@ -118,6 +162,10 @@ mod tests {
     impl RowEncoder for Deaf {
         fn takes_first_row_last(&self) -> bool {
             false
+        }
+
+        fn held_bytes(&self, _: usize) -> u64 {
+            0
         }
 
         fn write(&mut self, _: usize, rows: CodesRef<'_>) -> Result<()> {

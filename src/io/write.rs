@@ -1,9 +1,10 @@
 //! How maps are written.
 
 use super::format::OutputFormat;
-use super::{exr, png, tiff};
-use crate::error::Result;
-use crate::map::{NormalFormat, ParallaxFormat, Size, TexelFormat};
+use super::texture::BlockCompression;
+use super::{exr, png, texture, tiff};
+use crate::error::{Error, Result};
+use crate::map::{NormalFormat, ParallaxFormat, RoughnessFormat, Size, TexelFormat};
 use crate::names::named;
 use crate::stream::RowsOut;
 use std::path::Path;
@@ -13,6 +14,11 @@ use std::path::Path;
 pub struct WriteOptions {
     /// What a PNG's size is worth; the texels are the same.
     pub compression: Compression,
+    /// Whether the file has all mip levels down to a single texel: KTX2 and DDS, whose smaller levels
+    /// [`crate::stream::RowSink::levels`] takes.
+    pub mips: bool,
+    /// The blocks of a KTX2 or DDS file; `None`: texel by texel.
+    pub blocks: Option<BlockCompression>,
 }
 
 /// The trade of time for bytes in a file that is compressed without loss.
@@ -48,10 +54,15 @@ pub fn create_normals(path: &Path, size: Size, format: NormalFormat) -> Result<R
 /// | `png` | unorm, biased: 8, 16 | RGB with blue 0 |
 /// | `tif`, `tiff` | unorm, biased, snorm: 8, 16; float: 32f | two samples |
 /// | `exr` | float: 16f, 32f | channels R and G |
+/// | `ktx2`, `dds` | unorm, snorm: 8, 16; float: 16f, 32f | R and G |
+/// | the same in BC5 blocks | unorm, snorm: 8 | R and G, of xyz too |
+/// | the same in BC7 blocks | unorm: 8 | |
+///
+/// KTX2 and DDS are linear, and stand from the upper left; xyz is RGBA there, with an alpha of one.
 ///
 /// # Errors
-/// [`crate::Error::Parameter`] if the format cannot hold `format`; [`crate::Error::File`] for an unknown extension or
-/// a name that cannot be replaced; [`crate::Error::Io`].
+/// [`crate::Error::Parameter`] if the format cannot hold `format`, or not as `options` say; [`crate::Error::File`] for
+/// an unknown extension, a name that cannot be replaced, or a DDS above 4 GiB; [`crate::Error::Io`].
 pub fn create_normals_with(path: &Path, size: Size, format: NormalFormat, options: &WriteOptions) -> Result<RowsOut> {
     create_codes(path, size, format.texel(), options)
 }
@@ -73,6 +84,8 @@ pub fn create_parallax(path: &Path, size: Size, format: ParallaxFormat) -> Resul
 /// | `png` | biased, unorm: 8, 16 | grey |
 /// | `tif`, `tiff` | snorm, biased, unorm: 8, 16; float: 32f | one sample |
 /// | `exr` | float: 16f, 32f | the channel Y |
+/// | `ktx2`, `dds` | snorm, unorm: 8, 16; float: 16f, 32f | R |
+/// | the same in blocks | snorm, unorm: 8 | BC4 |
 ///
 /// # Errors
 /// As [`create_normals_with`].
@@ -85,38 +98,98 @@ pub fn create_parallax_with(
     create_codes(path, size, format.texel(), options)
 }
 
-/// Fails if a normal map file called `path` cannot hold `format`; nothing is looked up or created.
+/// Creates a roughness map file: one unorm component, as [`create_parallax_with`] has it, of one level or of all.
+///
+/// # Errors
+/// As [`create_normals_with`].
+pub fn create_roughness_with(
+    path: &Path,
+    size: Size,
+    format: RoughnessFormat,
+    options: &WriteOptions,
+) -> Result<RowsOut> {
+    create_codes(path, size, format.texel(), options)
+}
+
+/// Fails if a file called `path` cannot hold a roughness map of mip levels; nothing is looked up or created.
+///
+/// # Errors
+/// As [`check_normals_with`], and [`crate::Error::Parameter`] without levels, for which there is no roughness to tell.
+pub fn check_roughness(path: &Path, format: RoughnessFormat, options: &WriteOptions) -> Result<()> {
+    check_codes(path, format.texel(), &WriteOptions { mips: true, ..*options })?;
+    if options.mips {
+        return Ok(());
+    }
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    Err(Error::parameter("mips", format_args!("off, for {name}"), "on: roughness is what mip levels lose"))
+}
+
+/// Fails if a normal map file called `path` cannot hold `format` with the default [`WriteOptions`]; nothing is looked
+/// up or created.
+///
+/// # Errors
+/// As [`check_normals_with`].
+pub fn check_normal_format(path: &Path, format: NormalFormat) -> Result<()> {
+    check_normals_with(path, format, &WriteOptions::default())
+}
+
+/// Fails if a normal map file called `path` cannot hold `format` as `options` say; nothing is looked up or created.
 ///
 /// # Errors
 /// [`crate::Error::Parameter`], or [`crate::Error::File`] for an unknown extension, as [`create_normals_with`].
-pub fn check_normal_format(path: &Path, format: NormalFormat) -> Result<()> {
-    check_codes(path, format.texel()).map(drop)
+pub fn check_normals_with(path: &Path, format: NormalFormat, options: &WriteOptions) -> Result<()> {
+    check_codes(path, format.texel(), options).map(drop)
 }
 
-/// Fails if a parallax map file called `path` cannot hold `format`; nothing is looked up or created.
+/// Fails if a parallax map file called `path` cannot hold `format` with the default [`WriteOptions`]; nothing is looked
+/// up or created.
 ///
 /// # Errors
-/// As [`check_normal_format`].
+/// As [`check_normals_with`].
 pub fn check_parallax_format(path: &Path, format: ParallaxFormat) -> Result<()> {
-    check_codes(path, format.texel()).map(drop)
+    check_parallax_with(path, format, &WriteOptions::default())
+}
+
+/// Fails if a parallax map file called `path` cannot hold `format` as `options` say; nothing is looked up or created.
+///
+/// # Errors
+/// As [`check_normals_with`].
+pub fn check_parallax_with(path: &Path, format: ParallaxFormat, options: &WriteOptions) -> Result<()> {
+    check_codes(path, format.texel(), options).map(drop)
 }
 
 /// The format of the file `path`, which can hold `format`.
-fn check_codes(path: &Path, format: TexelFormat) -> Result<OutputFormat> {
+fn check_codes(path: &Path, format: TexelFormat, options: &WriteOptions) -> Result<OutputFormat> {
     format.check()?;
     let output = OutputFormat::of(path)?;
     match output {
+        OutputFormat::Texture(_) => return texture::check(path, format, options.blocks).map(|()| output),
         OutputFormat::Png => png::check(path, format)?,
         OutputFormat::Tiff => tiff::check(path, format)?,
         OutputFormat::Exr => exr::check(path, format)?,
     }
-    Ok(output)
+    check_plain(path, options).map(|()| output)
+}
+
+/// Fails if `options` ask for what only GPU textures have.
+fn check_plain(path: &Path, options: &WriteOptions) -> Result<()> {
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    if let Some(blocks) = options.blocks {
+        let range = "for .ktx2 and .dds: other files have no blocks";
+        return Err(Error::parameter("block-compression", format_args!("{blocks}, for {name}"), range));
+    }
+    if options.mips {
+        let range = "for .ktx2 and .dds: other files have one level";
+        return Err(Error::parameter("mips", format_args!("on, for {name}"), range));
+    }
+    Ok(())
 }
 
 fn create_codes(path: &Path, size: Size, format: TexelFormat, options: &WriteOptions) -> Result<RowsOut> {
-    match check_codes(path, format)? {
+    match check_codes(path, format, options)? {
         OutputFormat::Png => png::create(path, size, format, options.compression),
         OutputFormat::Tiff => tiff::create(path, size, format),
         OutputFormat::Exr => exr::create(path, size, format),
+        OutputFormat::Texture(container) => texture::create(path, container, size, format, options),
     }
 }

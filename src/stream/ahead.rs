@@ -5,11 +5,8 @@ use super::thread;
 use crate::error::Result;
 use std::thread::{Builder, JoinHandle};
 
-/// Buffers in flight besides the one in use: one being read, one waiting.
-const BUFFERS: usize = 3;
-
 /// What a reading thread has filled, in its order.
-pub(super) struct ReadAhead<T> {
+pub(crate) struct ReadAhead<T> {
     /// `None` once nothing more is wanted.
     filled: Option<Recycling<T>>,
     current: Option<T>,
@@ -22,7 +19,7 @@ impl<T: Send + 'static> ReadAhead<T> {
     /// # Errors
     /// [`crate::Error::Threads`].
     pub fn new(read_all: impl FnOnce(Filling<T>) -> Result<()> + Send + 'static) -> Result<Self> {
-        let (filled, filling) = recycling(BUFFERS);
+        let (filled, filling) = recycling();
         let thread = thread::start(Builder::new().name("texbake read".into()), || read_all(filling))?;
         Ok(Self { filled: Some(filled), current: None, thread: Some(thread) })
     }
@@ -45,6 +42,13 @@ impl<T> ReadAhead<T> {
             thread::join(thread)?;
         }
         Ok(self.current.as_ref())
+    }
+}
+
+impl<T> ReadAhead<T> {
+    /// The buffer in use: the one that [`ReadAhead::next`] returned last.
+    pub fn current(&self) -> Option<&T> {
+        self.current.as_ref()
     }
 }
 

@@ -2,6 +2,9 @@
 
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 
+/// Buffers between two threads: one being filled, one waiting, one being used.
+pub(crate) const BUFFERS: usize = 3;
+
 /// The side that uses buffers.
 #[derive(Debug)]
 pub(super) struct Recycling<T> {
@@ -10,7 +13,7 @@ pub(super) struct Recycling<T> {
 }
 
 /// The side that fills buffers.
-pub(super) struct Filling<T> {
+pub(crate) struct Filling<T> {
     full: SyncSender<T>,
     empty: Receiver<T>,
     /// Buffers that may still be made.
@@ -18,11 +21,11 @@ pub(super) struct Filling<T> {
     abandoned: bool,
 }
 
-/// A ring of at most `buffers` buffers.
-pub(super) fn recycling<T>(buffers: usize) -> (Recycling<T>, Filling<T>) {
-    let (full_sender, full) = sync_channel(buffers);
+/// A ring of at most [`BUFFERS`] buffers.
+pub(super) fn recycling<T>() -> (Recycling<T>, Filling<T>) {
+    let (full_sender, full) = sync_channel(BUFFERS);
     let (empty, empty_receiver) = channel();
-    let filling = Filling { full: full_sender, empty: empty_receiver, unmade: buffers, abandoned: false };
+    let filling = Filling { full: full_sender, empty: empty_receiver, unmade: BUFFERS, abandoned: false };
     (Recycling { full, empty }, filling)
 }
 

@@ -6,6 +6,7 @@
 
 mod ahead;
 mod band;
+mod budget;
 mod channel;
 mod layers;
 mod memory;
@@ -18,7 +19,9 @@ mod tests;
 mod thread;
 mod writer;
 
+pub(crate) use ahead::ReadAhead;
 pub(crate) use band::{Band, HeightBand, HeightBands};
+pub(crate) use channel::{BUFFERS, Filling};
 pub(crate) use layers::{LayerBand, LayerBands, LayerReader, LayerSource, MapLayers};
 pub(crate) use memory::{MapBands, MapSink};
 pub use monitor::Monitor;

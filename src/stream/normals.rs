@@ -21,9 +21,18 @@ pub trait NormalSource: Send {
     /// # Errors
     /// The reason that the file gives.
     fn read(&mut self, rows: CodesMut<'_>) -> Result<()>;
+
+    /// Bytes that the source holds at most while it is read, without the rows that it gives.
+    fn held_bytes(&self) -> u64 {
+        (self.size().width() * self.format().texel().bytes()) as u64
+    }
 }
 
 impl NormalSource for Box<dyn NormalSource> {
+    fn held_bytes(&self) -> u64 {
+        self.as_ref().held_bytes()
+    }
+
     fn size(&self) -> Size {
         self.as_ref().size()
     }

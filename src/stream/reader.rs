@@ -22,6 +22,15 @@ pub trait RowSource: Send {
     /// The reason that the file gives; [`crate::Error::NotFinite`] for a height that has no slope.
     fn read(&mut self, rows: HeightsMut<'_>) -> Result<()>;
 
+    /// Goes past the next rows, never more than are left.
+    ///
+    /// # Errors
+    /// As [`RowSource::read`].
+    fn skip(&mut self, rows: usize) -> Result<()> {
+        let mut row = BandBuffer::new(self.size().width(), self.height_type(), 1);
+        (0..rows).try_for_each(|_| self.read(row.rows_mut(0, 1)))
+    }
+
     /// Reads the last row and goes back to the first: what a map that wraps needs before anything else.
     ///
     /// # Errors

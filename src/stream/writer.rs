@@ -37,6 +37,12 @@ pub trait RowSink: Send {
     /// The system's or the format's reason.
     fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()>;
 
+    /// Bytes that the sink holds at most while it writes, besides the rows that it is given, `rows` of them at once.
+    fn held_bytes(&self, rows: usize) -> u64 {
+        let _ = rows;
+        0
+    }
+
     /// What takes the rows of the smaller mip levels, while those of the largest come here; `None` if the file has one
     /// level. It must be dropped before [`RowSink::complete`].
     fn levels(&mut self) -> Option<Box<dyn LevelSink>> {
@@ -70,9 +76,6 @@ pub trait LevelSink: Send {
     fn write(&mut self, level: usize, first: usize, rows: CodesRef<'_>) -> Result<()>;
 }
 
-/// Bands on their way out: one being filled, one waiting, one being written.
-const BUFFERS: usize = 3;
-
 /// Writes to a [`RowSink`] on a thread while the backend computes the next rows.
 pub(crate) struct CodeWriter {
     depth: Depth,
@@ -90,7 +93,7 @@ impl CodeWriter {
     /// [`Error::Threads`].
     pub fn new(mut sink: Box<dyn RowSink>, size: Size, format: TexelFormat, order: RowOrder) -> Result<Self> {
         let row_codes = format.row_codes(size.width());
-        let (full, filling) = recycling::<Codes>(BUFFERS);
+        let (full, filling) = recycling::<Codes>();
         let write_all = move || {
             let mut travelled = 0;
             while let Some(codes) = full.receive() {

@@ -181,7 +181,7 @@ fn many_files_give_a_table_of_failures_and_the_slowest() {
     assert!(lines[2..12].iter().all(|row| row.ends_with("baked")), "{}", run.stdout);
     assert!(lines[2..12].is_sorted_by(|a, b| milliseconds(a) >= milliseconds(b)), "{}", run.stdout);
     folder.file("tex/bad_h.png", "");
-    let run = folder.run(&["bake", "tex", "--out", "out"]).ends(1);
+    let run = folder.run(&["bake", "tex", "--out", "out", "--force"]).ends(1);
     let lines: Vec<&str> = run.stdout.lines().collect();
     assert_eq!((lines.len(), lines[0]), (14, "of 42 files 1 not baked, and the 10 slowest:"), "{}", run.stdout);
     assert!(lines[2].contains("tex/bad_h.png") && lines[2].ends_with("failed"), "{}", lines[2]);

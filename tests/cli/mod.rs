@@ -16,3 +16,4 @@ mod settings;
 mod shaders;
 pub mod support;
 pub mod tangents;
+mod textures;

@@ -36,7 +36,7 @@ fn a_folder_is_reported_file_by_file() {
     assert_eq!(
         totals,
         json!({
-            "files": 3, "baked": 2, "failed": 1, "stopped": 0, "not_begun": 0, "texels": 216,
+            "files": 3, "baked": 2, "fresh": 0, "failed": 1, "stopped": 0, "not_begun": 0, "texels": 216,
             "bytes_in": bytes("tex/a_height.png") + bytes("tex/b_height_2k.png"),
             "bytes_out": bytes("out/a_normal.png") + bytes("out/b_normal_2k.png"),
         })
@@ -55,7 +55,7 @@ fn a_folder_is_reported_file_by_file() {
     assert_eq!(
         files[0],
         json!({
-            "input": "tex/a_height.png", "normals": null, "parallax": null,
+            "input": "tex/a_height.png", "normals": null, "parallax": null, "stale": "new",
             "outputs": { "normal": "out/a_normal.png", "parallax": null }, "result": "baked", "error": null,
             "warnings": [], "options": options, "backend": "cpu", "adapter": "reference, 1 thread",
             "reason": "asked for", "fallback": null, "width": 20, "height": 10, "depth": "u16",

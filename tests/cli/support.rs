@@ -8,6 +8,9 @@ use texbake::{Baker, Codes, CodesRef, Grid, HeightMap, NormalMap, NormalOptions,
 /// A folder for one test, in which the program runs.
 pub struct Folder(TempDir);
 
+/// The file in which `bake` remembers what it baked.
+pub const RECORD: &str = ".texbake-baked";
+
 /// How a run of the program ended.
 pub struct Run {
     pub status: i32,
@@ -61,7 +64,8 @@ impl Folder {
         command
     }
 
-    /// The paths of all files below a folder of this one, with `/`, sorted; none if there is no such folder.
+    /// The paths of all files below a folder of this one, with `/`, sorted; none if there is no such folder. What
+    /// `bake` remembers is left out.
     pub fn files(&self, folder: &str) -> Vec<String> {
         let root = self.path(folder);
         let mut files = Vec::new();
@@ -71,7 +75,7 @@ impl Folder {
                 let path = entry.unwrap().path();
                 if path.is_dir() {
                     folders.push(path);
-                } else {
+                } else if !path.ends_with(RECORD) {
                     let below = path.strip_prefix(&root).unwrap();
                     files.push(below.to_str().unwrap().replace('\\', "/"));
                 }

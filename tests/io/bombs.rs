@@ -13,6 +13,7 @@ use ::exr::prelude::{
 };
 use serde_json::json;
 use std::fmt::Write;
+use std::io::Write as _;
 use std::process::Command;
 
 /// The address space of the program: its code, its threads' stacks and its allocator's arena, and what it allocates.
@@ -77,10 +78,10 @@ fn assert_model_refused(name: &str, bytes: &[u8], expected: &str) {
 
 /// A zlib stream that inflates to zeros, as dense as can be.
 fn zeros(bytes: usize) -> Vec<u8> {
-    let mut deflate = fdeflate::Compressor::new(Vec::new()).unwrap();
+    let mut deflate = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
     let piece = vec![0; 1 << 20];
     for begin in (0..bytes).step_by(piece.len()) {
-        deflate.write_data(&piece[..piece.len().min(bytes - begin)]).unwrap();
+        deflate.write_all(&piece[..piece.len().min(bytes - begin)]).unwrap();
     }
     deflate.finish().unwrap()
 }

@@ -12,6 +12,8 @@ pub struct Tiff {
     /// 1 black is zero, 2 RGB.
     pub photometric: u16,
     pub planar: bool,
+    /// 1 none, 5 LZW, 8 deflate: of the bytes that the chunks already are.
+    pub compression: u16,
     /// Tile sides, or rows per strip.
     pub tile: Option<(u32, u32)>,
     pub rows_per_strip: u32,
@@ -24,7 +26,21 @@ impl Tiff {
     pub fn grey(width: u32, height: u32, bits: u16, kind: u16, chunks: Vec<Vec<u8>>) -> Self {
         let rows_per_strip = height.div_ceil(chunks.len().max(1) as u32);
         let (samples, photometric, planar, tile, extra) = (1, 1, false, None, Vec::new());
-        Self { width, height, bits, kind, samples, photometric, planar, tile, rows_per_strip, chunks, extra }
+        let compression = 1;
+        Self {
+            width,
+            height,
+            bits,
+            kind,
+            samples,
+            photometric,
+            planar,
+            compression,
+            tile,
+            rows_per_strip,
+            chunks,
+            extra,
+        }
     }
 
     pub fn bytes(&self) -> Vec<u8> {
@@ -44,7 +60,7 @@ impl Tiff {
             (256, 4, 1, longs(vec![self.width])),
             (257, 4, 1, longs(vec![self.height])),
             (258, 3, samples as u32, shorts(vec![self.bits; samples])),
-            (259, 3, 1, shorts(vec![1])),
+            (259, 3, 1, shorts(vec![self.compression])),
             (262, 3, 1, shorts(vec![self.photometric])),
             (277, 3, 1, shorts(vec![self.samples])),
             (284, 3, 1, shorts(vec![if self.planar { 2 } else { 1 }])),

@@ -2,8 +2,13 @@
 //!
 //!     png-codecs HEIGHT.png [ROUNDS]
 
+
 mod filter;
 mod huffman;
+#[macro_use]
+#[path = "../../../src/vectorised.rs"]
+mod vectorised;
+mod production;
 
 use cpu_time::ProcessTime;
 use filter::{Filter, filtered};
@@ -75,6 +80,19 @@ fn main() {
     let rounds = arguments.next().map_or(5, |r| r.parse().expect("ROUNDS is a number"));
     let file = std::fs::read(&path).expect("the height map is there");
     let heights = decode_png(&file);
+    if std::env::var_os("EXPERIMENT").is_some() {
+        let crop = |i: &Image, n: usize| { let (w, h) = (n.min(i.width), n.min(i.height)); Image { width: w, height: h, bpp: i.bpp, samples: (0..h).flat_map(|y| i.samples[y * i.row()..][..w * i.bpp].to_vec()).collect() } };
+        let n = 1024;
+        for (name, scale) in [("steep", 100.0), ("gentle", 10.0), ("flat-ish", 0.3), ("xy", 10.01)] {
+            let normals = crop(&bake(&heights, scale), n);
+            production::experiment::run(name, &normals, name == "gentle");
+            if scale > 1.0 {
+            let mut normals = normals; if scale == 10.01 { normals.samples.iter_mut().skip(2).step_by(3).for_each(|b| *b = 0); production::experiment::run("xy", &normals, false); } let blue = Image { width: n, height: n, bpp: 1, samples: normals.samples.iter().skip(2).step_by(3).copied().collect() };
+            production::experiment::run(&format!("{name} grey"), &blue, false); }
+        }
+        production::experiment::run("16-bit heights", &crop(&heights, n), false);
+        return;
+    }
     println!("{} x {}, {} rounds", heights.width, heights.height, rounds);
     decoding("decoding 16-bit grey heights", &file, &heights, rounds);
     for (name, scale) in [("steep", 100.0), ("gentle", 10.0)] {

@@ -163,6 +163,12 @@ impl Backend for Untested {
         (BAND_BYTES / row.read.max(row.written)).max(1)
     }
 
+    /// The buffers of the bands in flight, the host's and the device's, which a software device has in the same memory.
+    fn held_bytes(&self, row: RowBytes) -> u64 {
+        let rows = self.band_rows(row) + 2;
+        (transfer::RING * 2 * rows * (row.read + row.written)) as u64
+    }
+
     fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {
         self.check_width(plan)?;
         bake::run(&self.device, plan, Doubt::Near, bands, sinks)
@@ -237,6 +243,10 @@ impl Backend for Gpu {
 
     fn band_rows(&self, row: RowBytes) -> usize {
         self.untested.band_rows(row)
+    }
+
+    fn held_bytes(&self, row: RowBytes) -> u64 {
+        self.untested.held_bytes(row)
     }
 
     fn bake(&self, plan: &BakePlan, bands: &mut dyn HeightBands, sinks: &mut [&mut dyn CodeSink]) -> Result<()> {

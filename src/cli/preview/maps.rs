@@ -7,7 +7,7 @@ use crate::cli::settings::{Settings, open_baker};
 use std::fs;
 use std::path::{Path, PathBuf};
 use texbake::batch::{Found, Search};
-use texbake::io::{NormalReadOptions, ParallaxReadOptions};
+use texbake::io::{NormalReadOptions, ParallaxReadOptions, WriteOptions};
 use texbake::material::Material;
 use texbake::{BakeOptions, Error, Grid, HeightMap, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Result};
 
@@ -42,7 +42,7 @@ impl Shown {
         let heights = heights.transpose()?;
         let format = normal_format(settings)?;
         let parallax = Some(ParallaxFormat::default());
-        let options = settings.slope.bake(Some(format), parallax)?;
+        let options = settings.slope.bake(Some(format), parallax, None)?;
         // --scale is in texels of the file.
         let options = BakeOptions { scale: options.scale.shrunk(settings.input.read().shrink)?, ..options };
         if settings.slope.scale.is_none() && settings.slope.size.is_none() && !arguments.quiet {
@@ -183,6 +183,6 @@ fn of_parallax(error: Error) -> Error {
 
 /// The format that was asked for, if one kind of file can hold it.
 fn normal_format(settings: &Settings) -> Result<NormalFormat> {
-    let held_by = |name| settings.normal.format(Path::new(name));
+    let held_by = |name| settings.normal.format(Path::new(name), &WriteOptions::default());
     held_by("map.png").or_else(|error| held_by("map.tif").or_else(|_| held_by("map.exr")).map_err(|_| error))
 }

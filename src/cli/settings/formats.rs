@@ -3,7 +3,7 @@
 use crate::cli::values::choice;
 use clap::Args;
 use std::path::Path;
-use texbake::io::{check_normal_format, check_parallax_format, default_format, default_parallax_format};
+use texbake::io::{WriteOptions, check_normals_with, check_parallax_with, default_format, default_parallax_format};
 use texbake::{Channels, Convention, Depth, Encoding, NormalFormat, ParallaxFormat, Result};
 
 /// What was set of a normal map.
@@ -13,7 +13,7 @@ pub struct NormalOutput {
     #[arg(long, value_parser = choice::<Encoding>(Encoding::NAMES), help_heading = HEADING)]
     pub encoding: Option<Encoding>,
 
-    /// Bits of a code; f is for float [default: 8 in PNG, 16 in TIFF, 32f in EXR files]
+    /// Bits of a code; f is for float [default: 8 in PNG, KTX2 and DDS, 16 in TIFF, 32f in EXR files]
     #[arg(long, value_parser = choice::<Depth>(Depth::NAMES), help_heading = HEADING)]
     pub bits: Option<Depth>,
 
@@ -43,22 +43,23 @@ impl NormalOutput {
         Self { encoding, bits, channels, convention: self.convention.or(weaker.convention) }
     }
 
-    /// The format of the normal map `output`.
+    /// The format of the normal map `output`, which is written as `write` says.
     ///
     /// # Errors
     /// [`texbake::Error::Parameter`] if encoding and bits do not go together, or `output` cannot hold them; what its
     /// extension has to say.
-    pub fn format(&self, output: &Path) -> Result<NormalFormat> {
+    pub fn format(&self, output: &Path, write: &WriteOptions) -> Result<NormalFormat> {
         let (encoding, depth) = self.codes().resolve(default_format(output)?, Encoding::Unorm);
         let (channels, convention) = (self.channels.unwrap_or_default(), self.convention.unwrap_or_default());
         let format = NormalFormat { encoding, depth, channels, convention };
-        check_normal_format(output, format).map(|()| format)
+        check_normals_with(output, format, write).map(|()| format)
     }
 
     /// These settings without the encoding and bits that the file `output` cannot hold.
     pub fn held_by(&self, output: &Path) -> Self {
         let holds = |codes: CodeChoice| Self { encoding: codes.encoding, bits: codes.bits, ..Self::default() };
-        let CodeChoice { encoding, bits } = self.codes().filter(|codes| holds(codes).format(output).is_ok());
+        let CodeChoice { encoding, bits } =
+            self.codes().filter(|codes| holds(codes).format(output, &WriteOptions::default()).is_ok());
         Self { encoding, bits, ..self.clone() }
     }
 
@@ -78,7 +79,7 @@ impl CodeChoice {
 
     /// This choice without the encoding and bits that the parallax map file `output` cannot hold.
     pub fn held_by(self, output: &Path) -> Self {
-        self.filter(|codes| codes.parallax(output).is_ok())
+        self.filter(|codes| codes.parallax(output, &WriteOptions::default()).is_ok())
     }
 
     /// Encoding and bits, each if it alone is possible.
@@ -89,15 +90,15 @@ impl CodeChoice {
         }
     }
 
-    /// The format of the parallax map `output`.
+    /// The format of the parallax map `output`, which is written as `write` says.
     ///
     /// # Errors
     /// As [`NormalOutput::format`].
-    pub fn parallax(self, output: &Path) -> Result<ParallaxFormat> {
+    pub fn parallax(self, output: &Path, write: &WriteOptions) -> Result<ParallaxFormat> {
         let usual = default_parallax_format(output)?;
         let (encoding, depth) = self.resolve((usual.encoding, usual.depth), Encoding::Snorm);
         let format = ParallaxFormat { encoding, depth };
-        check_parallax_format(output, format).map(|()| format)
+        check_parallax_with(output, format, write).map(|()| format)
     }
 
     /// The file's `usual` encoding and bits where nothing else was set; float bits mean the encoding float, and integer

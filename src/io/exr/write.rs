@@ -150,6 +150,11 @@ impl ExrEncoder {
 }
 
 impl RowEncoder for ExrEncoder {
+    /// Whole blocks of rows: as they came, channel by channel, deflated, and in the file's order.
+    fn held_bytes(&self, rows: usize) -> u64 {
+        (4 * (rows + COMPRESSION.scan_lines_per_block()) * self.row_bytes()) as u64
+    }
+
     /// Blocks of several rows are compressed one after the other.
     fn takes_first_row_last(&self) -> bool {
         false

@@ -1,6 +1,13 @@
 //! PNG, row by row.
 
+mod deflate;
+mod filter;
+mod in_order;
+mod inflate;
 mod read;
+mod rows;
+mod stripe;
+mod unfilter;
 mod write;
 mod zlib;
 

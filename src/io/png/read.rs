@@ -1,22 +1,26 @@
 //! PNG height and normal maps, read.
 
+use super::rows::PlainRows;
 use crate::error::{Error, Result};
 use crate::io::damage::{damaged, io_reason};
 use crate::io::samples::{DecodedWhole, Layout, Opened, SampleRows, Samples, bytes_mut, len};
 use crate::io::{input, limits, srgb};
 use crate::map::{HeightType, HeightsMut};
-use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Reader, Transformations};
+use png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Reader, Transformations};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// Compressed bytes that are read from the file at once.
-const READ_BYTES: usize = 256 << 10;
+pub(super) const READ_BYTES: usize = 256 << 10;
+
+/// Rows that are held at once, in the worst case: those that were inflated ahead, the last one and the next.
+const ROWS_HELD: u128 = 5;
 
 /// Room for what stands beside the rows, such as colour profiles.
 const METADATA_BYTES: usize = 64 << 20;
 
-/// The rows of a PNG that is not interlaced.
+/// The rows of a PNG that is not interlaced, expanded where that is needed.
 struct PngRows {
     path: PathBuf,
     max_bytes: u64,
@@ -34,16 +38,27 @@ pub(crate) fn open(path: &Path, max_bytes: u64) -> Result<Opened> {
     let profile_is_srgb = info.icc_profile.as_deref().is_some_and(srgb::is_named_by);
     let says_srgb = info.srgb.is_some() || profile_is_srgb;
     let opened = if info.interlaced {
-        let mut samples = Samples::zeroed(layout.depth, layout.per_row() * layout.size.height());
-        let mut whole = samples.as_mut();
-        reader.next_frame(bytes_mut(&mut whole)).map_err(reason(path))?;
-        reader.finish().map_err(reason(path))?;
-        to_native_order(whole);
-        Opened::new(DecodedWhole::new(layout, samples))
+        let path = path.to_owned();
+        Opened::new(DecodedWhole::new(layout, 0, move || {
+            let mut samples = Samples::zeroed(layout.depth, layout.per_row() * layout.size.height());
+            let mut whole = samples.as_mut();
+            reader.next_frame(bytes_mut(&mut whole)).map_err(reason(&path))?;
+            reader.finish().map_err(reason(&path))?;
+            to_native_order(whole);
+            Ok(samples)
+        }))
+    } else if is_plain(info) {
+        Opened::new(PlainRows::new(path.into(), layout))
     } else {
         Opened::new(PngRows { path: path.into(), max_bytes, reader, layout, next_row: 0 })
     };
     Ok(Opened { says_srgb, ..opened })
+}
+
+/// Whether rows hold the samples as they are.
+fn is_plain(info: &Info<'_>) -> bool {
+    let is_expanded = info.color_type == ColorType::Indexed || info.trns.is_some() || (info.bit_depth as u8) < 8;
+    !is_expanded && info.animation_control.is_none()
 }
 
 /// Reads up to the first row; nothing is allocated before the header's claims are checked.
@@ -57,7 +72,7 @@ fn start(path: &Path, max_bytes: u64) -> Result<(Reader<BufReader<File>>, Layout
     let header = decoder.read_header_info().map_err(reason(path))?;
     let size = limits::size(path, header.width.into(), header.height.into())?;
     let row_bits = size.width() as u128 * header.bits_per_pixel() as u128;
-    let rows_at_once = if header.interlaced { size.height() as u128 } else { 2 };
+    let rows_at_once = if header.interlaced { size.height() as u128 } else { ROWS_HELD };
     limits::check(path, size, row_bits * rows_at_once / 8, max_bytes)?;
     limits::check_deflated(path, size, row_bits.div_ceil(8) * size.height() as u128, stored)?;
     decoder.set_limits(Limits { bytes: METADATA_BYTES + size.width() * 8 });
@@ -124,14 +139,14 @@ impl SampleRows for PngRows {
 }
 
 /// PNG stores 16-bit samples with the most significant byte first.
-fn to_native_order(samples: HeightsMut<'_>) {
+pub(super) fn to_native_order(samples: HeightsMut<'_>) {
     if let HeightsMut::U16(samples) = samples {
         samples.iter_mut().for_each(|sample| *sample = u16::from_be(*sample));
     }
 }
 
 /// The decoder's reason, with the file and the way out.
-fn reason(path: &Path) -> impl FnOnce(DecodingError) -> Error + '_ {
+pub(super) fn reason(path: &Path) -> impl FnOnce(DecodingError) -> Error + '_ {
     move |error| match error {
         DecodingError::IoError(error) => io_reason(path, error),
         DecodingError::LimitsExceeded => damaged(path, "it needs too much memory beside its rows"),

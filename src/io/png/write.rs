@@ -4,8 +4,13 @@
 //! decoding and encoding from overlapping. So the first row is stored, not deflated: its bytes have a known number,
 //! room is left for them, and they are filled in whenever the row arrives. Row 1 is filtered without looking up. The
 //! file is the same whenever row 0 comes, and hardly larger.
+//!
+//! The other rows are cut into stripes of a fixed height, which several threads filter and deflate. The bytes depend on
+//! neither the threads nor the number of rows that come at once.
 
-use super::zlib::{IdatStream, first_idat, stored_bytes};
+use super::in_order::InOrder;
+use super::stripe::{Effort, Stripe, stripe_rows};
+use super::zlib::{self, adler_of_both};
 use crate::error::{Error, Result};
 use crate::io::Compression;
 use crate::io::replace::{Output, Replacement};
@@ -13,38 +18,62 @@ use crate::io::sink::{FileSink, RowEncoder, cannot_hold};
 use crate::map::{CodesRef, Depth, Encoding, Size, TexelFormat};
 use crate::stream::RowSink;
 use png::chunk::IDAT;
-use png::{BitDepth, ColorType, Encoder, EncodingError};
+use png::{BitDepth, ColorType, Encoder, EncodingError, Writer};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Where the first IDAT chunk begins: behind the signature and IHDR.
 const FIRST_IDAT: u64 = 8 + 25;
 
-/// The first byte of a filtered row (PNG specification, section 9).
+/// The first byte of a row that is not filtered (PNG specification, section 9).
 const NONE: u8 = 0;
-const SUB: u8 = 1;
-const PAETH: u8 = 4;
 
-/// Streams rows through deflate.
+/// Chunks are cut here: PNG's may have 2^31 - 1 bytes (PNG specification, section 5.3).
+const CHUNK_MOST: usize = 1 << 30;
+
+/// Bytes of rows that may wait to be deflated or written, beside one stripe.
+const WAITING_BYTES: usize = 16 << 20;
+
+/// Filters and deflates rows on several threads.
 struct PngEncoder {
     path: PathBuf,
-    stream: IdatStream,
+    writer: Writer<Output>,
     /// The same file, to fill the room that was left.
     file: Output,
+    layout: RowLayout,
+    effort: Effort,
+    first_row: Vec<u8>,
+    /// The stripe that is being filled; those on their way; one that is free.
+    stripe: Stripe,
+    encoding: InOrder<Stripe>,
+    free: Option<Stripe>,
+    /// Of all stripes written so far: the Adler-32 of what was deflated, and its bytes.
+    checksum: u32,
+    bytes: u64,
+}
+
+/// How a row of codes becomes a row of samples.
+struct RowLayout {
     channels: usize,
     depth: Depth,
     /// Bytes of a row and of a texel in the file.
     row_bytes: usize,
     texel_bytes: usize,
-    first_row: Vec<u8>,
-    previous: Vec<u8>,
-    current: Vec<u8>,
-    filtered: Vec<u8>,
 }
 
 /// Creates a PNG with 8 or 16 bits: grey for one channel, else RGB; xy maps leave blue 0, since PNG's only two-channel
 /// type means transparency.
-pub(crate) fn create(path: &Path, size: Size, format: TexelFormat, _: Compression) -> Result<Box<dyn RowSink>> {
+pub(crate) fn create(
+    path: &Path,
+    size: Size,
+    format: TexelFormat,
+    compression: Compression,
+) -> Result<Box<dyn RowSink>> {
+    let effort = match compression {
+        Compression::Fast => Effort::Fast,
+        Compression::Balanced => Effort::Balanced,
+        Compression::Small => Effort::Small,
+    };
     let depth = bit_depth(path, format)?;
     let replacement = Replacement::create(path)?;
     let [width, height] = [size.width(), size.height()].map(|side| side as u32);
@@ -58,19 +87,21 @@ pub(crate) fn create(path: &Path, size: Size, format: TexelFormat, _: Compressio
     let mut writer = encoder.write_header().map_err(reason(path))?;
     let texel_bytes = samples * format.depth.bytes();
     let row_bytes = size.width() * texel_bytes;
-    writer.write_chunk(IDAT, &vec![0; 2 + stored_bytes(1 + row_bytes)]).map_err(reason(path))?;
+    writer.write_chunk(IDAT, &vec![0; zlib::first_bytes(1 + row_bytes)]).map_err(reason(path))?;
+    let mut stripe = Stripe::default();
+    stripe.begin(row_bytes, texel_bytes, None);
     let encoder = PngEncoder {
         path: path.into(),
-        stream: IdatStream::new(writer),
+        writer,
         file: replacement.output()?,
-        channels: format.channels,
-        depth: format.depth,
-        row_bytes,
-        texel_bytes,
+        layout: RowLayout { channels: format.channels, depth: format.depth, row_bytes, texel_bytes },
+        effort,
         first_row: Vec::new(),
-        previous: vec![0; row_bytes],
-        current: vec![0; row_bytes],
-        filtered: Vec::with_capacity(1 + row_bytes),
+        stripe,
+        encoding: InOrder::new(move |stripe: &mut Stripe| stripe.encode(effort)),
+        free: None,
+        checksum: 1, // of no bytes
+        bytes: 0,
     };
     Ok(FileSink::boxed(encoder, replacement, size, format))
 }
@@ -99,97 +130,116 @@ fn bit_depth(path: &Path, format: TexelFormat) -> Result<BitDepth> {
 }
 
 impl RowEncoder for PngEncoder {
+    /// The first row, and stripes: the one that is filled, a free one, and those on their way; each as it came,
+    /// filtered, and deflated.
+    fn held_bytes(&self, _: usize) -> u64 {
+        let stripes = self.most_waiting() + 2;
+        (2 * self.layout.row_bytes + stripes * 3 * (self.stripe_bytes() + self.layout.row_bytes)) as u64
+    }
+
     fn takes_first_row_last(&self) -> bool {
         true
     }
 
     fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
-        let row_codes = self.row_bytes / self.texel_bytes * self.channels;
-        let bytes = rows.bytes().chunks_exact(row_codes * self.depth.bytes());
-        for (row, codes) in (first..).zip(bytes) {
-            self.samples(codes);
-            match row {
-                0 => self.first_row = [&[NONE], self.current.as_slice()].concat(),
-                1 => self.deflate(SUB),
-                _ => self.deflate(PAETH),
+        for (row, codes) in (first..).zip(rows.bytes().chunks_exact(self.layout.code_bytes())) {
+            if row == 0 {
+                self.first_row = vec![NONE; 1 + self.layout.row_bytes];
+                self.layout.fill(&mut self.first_row[1..], codes);
+            } else {
+                if self.stripe.count() == stripe_rows(self.layout.row_bytes) {
+                    self.send_stripe()?;
+                }
+                self.layout.fill(self.stripe.next_row(), codes);
             }
-            std::mem::swap(&mut self.previous, &mut self.current);
         }
         Ok(())
     }
 
-    fn finish(self: Box<Self>) -> Result<()> {
-        let Self { path, stream, mut file, first_row, .. } = *self;
-        stream.finish(&first_row).map_err(reason(&path))?;
+    fn finish(mut self: Box<Self>) -> Result<()> {
+        // Meanwhile other threads have the stripes before it; a small map needs none.
+        let mut last = std::mem::take(&mut self.stripe);
+        last.encode(self.effort);
+        while let Some(stripe) = self.encoding.pop() {
+            self.write_stripe(stripe)?;
+        }
+        self.write_stripe(last)?;
+        let Self { path, mut writer, mut file, first_row, checksum, bytes, .. } = *self;
+        let checksum = adler_of_both(simd_adler32::adler32(&first_row.as_slice()), checksum, bytes);
+        let end = zlib::end(checksum);
+        writer.write_chunk(IDAT, &end).and_then(|()| writer.finish()).map_err(reason(&path))?;
         let mut fill = || {
             file.seek(SeekFrom::Start(FIRST_IDAT))?;
-            file.write_all(&first_idat(&first_row))
+            file.write_all(&zlib::first_idat(&first_row))
         };
         fill().map_err(Error::io(&path))
     }
 }
 
 impl PngEncoder {
+    fn stripe_bytes(&self) -> usize {
+        stripe_rows(self.layout.row_bytes) * self.layout.row_bytes
+    }
+
+    /// Stripes that may be on their way.
+    fn most_waiting(&self) -> usize {
+        (WAITING_BYTES / self.stripe_bytes()).clamp(1, rayon::current_num_threads() + 1)
+    }
+
+    /// Lets some thread encode the stripe, and goes on with the next one.
+    fn send_stripe(&mut self) -> Result<()> {
+        let mut next = self.free.take().unwrap_or_default();
+        next.begin(self.layout.row_bytes, self.layout.texel_bytes, Some(self.stripe.last_row()));
+        self.encoding.push(std::mem::replace(&mut self.stripe, next));
+        while self.encoding.len() > self.most_waiting()
+            && let Some(stripe) = self.encoding.pop()
+        {
+            self.write_stripe(stripe)?;
+        }
+        Ok(())
+    }
+
+    fn write_stripe(&mut self, stripe: Stripe) -> Result<()> {
+        for chunk in stripe.deflated().chunks(CHUNK_MOST) {
+            self.writer.write_chunk(IDAT, chunk).map_err(reason(&self.path))?;
+        }
+        let (checksum, bytes) = stripe.checksum();
+        self.checksum = adler_of_both(self.checksum, checksum, bytes);
+        self.bytes += bytes;
+        self.free = Some(stripe);
+        Ok(())
+    }
+}
+
+impl RowLayout {
+    /// Bytes of a row of codes.
+    fn code_bytes(&self) -> usize {
+        self.row_bytes / self.texel_bytes * self.channels * self.depth.bytes()
+    }
+
     /// Brings a row of codes into the file's channels and byte order.
-    fn samples(&mut self, codes: &[u8]) {
-        let texels = self.current.chunks_exact_mut(self.texel_bytes);
+    fn fill(&self, row: &mut [u8], codes: &[u8]) {
+        let texels = row.chunks_exact_mut(self.texel_bytes);
         match (self.depth, self.channels) {
             (Depth::Bits8, 2) => {
                 texels.zip(codes.chunks_exact(2)).for_each(|(rgb, xy)| rgb.copy_from_slice(&[xy[0], xy[1], 0]));
             }
-            (Depth::Bits8, _) => self.current.copy_from_slice(codes),
+            (Depth::Bits8, _) => row.copy_from_slice(codes),
             (_, 2) => texels.zip(codes.chunks_exact(4)).for_each(|(rgb, xy)| {
                 let (x, y) = (big_endian(&xy[..2]), big_endian(&xy[2..]));
                 rgb.copy_from_slice(&[x[0], x[1], y[0], y[1], 0, 0]);
             }),
             _ => {
-                let samples = self.current.chunks_exact_mut(2).zip(codes.chunks_exact(2));
+                let samples = row.chunks_exact_mut(2).zip(codes.chunks_exact(2));
                 samples.for_each(|(sample, code)| sample.copy_from_slice(&big_endian(code)));
             }
         }
-    }
-
-    /// Filters the current row and deflates it.
-    fn deflate(&mut self, filter: u8) {
-        self.filtered.clear();
-        self.filtered.push(filter);
-        match filter {
-            SUB => sub(&self.current, self.texel_bytes, &mut self.filtered),
-            _ => paeth(&self.current, &self.previous, self.texel_bytes, &mut self.filtered),
-        }
-        self.stream.write(&self.filtered);
     }
 }
 
 /// A 16-bit code, most significant byte first, as PNG stores it.
 fn big_endian(code: &[u8]) -> [u8; 2] {
     u16::from_ne_bytes([code[0], code[1]]).to_be_bytes()
-}
-
-/// Each byte less the one a texel to its left.
-fn sub(row: &[u8], texel: usize, filtered: &mut Vec<u8>) {
-    filtered.extend_from_slice(&row[..texel]);
-    filtered.extend(row[texel..].iter().zip(row).map(|(here, left)| here.wrapping_sub(*left)));
-}
-
-/// Each byte less the one of left, up and upper left that is nearest to left + up - upper left.
-fn paeth(row: &[u8], above: &[u8], texel: usize, filtered: &mut Vec<u8>) {
-    filtered.extend(row[..texel].iter().zip(above).map(|(here, up)| here.wrapping_sub(*up)));
-    let around = row.iter().zip(&above[texel..]).zip(above);
-    filtered.extend(
-        row[texel..]
-            .iter()
-            .zip(around)
-            .map(|(here, ((left, up), upper_left))| here.wrapping_sub(nearest(*left, *up, *upper_left))),
-    );
-}
-
-/// The Paeth predictor, in an order that vectorises.
-fn nearest(left: u8, up: u8, upper_left: u8) -> u8 {
-    let [a, b, c] = [left, up, upper_left].map(i16::from);
-    let [from_left, from_up, from_upper_left] = [(b - c).abs(), (a - c).abs(), (a + b - 2 * c).abs()];
-    let of_columns = if from_up <= from_upper_left { up } else { upper_left };
-    if from_left <= from_up && from_left <= from_upper_left { left } else { of_columns }
 }
 
 /// The encoder's reason, with the file.

@@ -1,40 +1,29 @@
-//! The zlib stream of a PNG whose first row is stored and whose other rows are deflated by `fdeflate`.
+//! The zlib stream of a PNG, from parts: a stored first row, then stripes that were deflated by themselves.
 //!
-//! Stored blocks end on a byte boundary (RFC 1951, section 3.2.4), so `fdeflate`'s blocks can follow them; only the
-//! header and the checksum at the ends of its own stream are replaced.
+//! Stored blocks end on a byte's border (RFC 1951, section 3.2.4), and so do stripes: they join, and so do their
+//! checksums.
 
-use crate::io::replace::Output;
-use fdeflate::Compressor;
+use super::deflate::{STORED_HEADER, STORED_MOST, stored_header};
 use png::chunk::IDAT;
-use png::{EncodingError, Writer};
-use std::io;
 
-/// Deflated bytes that go to the file as one chunk.
-const CHUNK_BYTES: usize = 256 << 10;
+/// A zlib stream's first bytes: deflate with a window of 32 KiB (RFC 1950).
+const HEADER: [u8; 2] = [0x78, 0x01];
 
-/// A zlib stream's first bytes: deflate with a window of 32 KiB, fastest (RFC 1950).
-const ZLIB_HEADER: [u8; 2] = [0x78, 0x01];
-/// Bytes of its checksum, Adler-32 of what was deflated.
-const CHECKSUM_BYTES: usize = 4;
+/// An empty block, the last.
+const LAST_BLOCK: [u8; 5] = [1, 0, 0, 0xff, 0xff];
+
 const ADLER_MODULUS: u64 = 65_521;
 
-/// The most bytes of a stored block, and the bytes before them.
-const STORED_MOST: usize = 0xffff;
-const STORED_HEADER: usize = 5;
-
-/// Bytes that `bytes` take when they are stored.
-pub(super) fn stored_bytes(bytes: usize) -> usize {
-    bytes + STORED_HEADER * bytes.div_ceil(STORED_MOST)
+/// Bytes of the first chunk's content, with a first row of `row` bytes in it.
+pub(super) fn first_bytes(row: usize) -> usize {
+    HEADER.len() + row + STORED_HEADER * row.div_ceil(STORED_MOST)
 }
 
 /// The first IDAT chunk, whole: zlib's header and the stored first row.
 pub(super) fn first_idat(row: &[u8]) -> Vec<u8> {
-    let mut data = ZLIB_HEADER.to_vec();
+    let mut data = HEADER.to_vec();
     for block in row.chunks(STORED_MOST) {
-        let length = block.len() as u16;
-        data.push(0); // stored, and not the last block
-        data.extend(length.to_le_bytes());
-        data.extend((!length).to_le_bytes());
+        data.extend(stored_header(block.len()));
         data.extend_from_slice(block);
     }
     let mut checked = IDAT.0.to_vec();
@@ -43,93 +32,16 @@ pub(super) fn first_idat(row: &[u8]) -> Vec<u8> {
     [&(data.len() as u32).to_be_bytes()[..], &checked, &checksum.to_be_bytes()].concat()
 }
 
-/// Deflates rows into IDAT chunks.
-pub(super) struct IdatStream {
-    deflate: Compressor<Chunks>,
-    /// Bytes that were deflated.
-    bytes: u64,
+/// The stream's end, after parts with this checksum.
+pub(super) fn end(checksum: u32) -> Vec<u8> {
+    [&LAST_BLOCK[..], &checksum.to_be_bytes()].concat()
 }
 
-/// What comes out of deflate, cut into chunks.
-///
-/// Nothing here fails before the end: `fdeflate` would panic. The file remembers what it met, and so does this.
-struct Chunks {
-    writer: Writer<Output>,
-    /// Bytes of the header that are still to be dropped.
-    drop: usize,
-    pending: Vec<u8>,
-    failure: Option<EncodingError>,
-}
-
-impl IdatStream {
-    pub fn new(writer: Writer<Output>) -> Self {
-        let chunks = Chunks { writer, drop: ZLIB_HEADER.len(), pending: Vec::new(), failure: None };
-        let deflate = Compressor::new(chunks).expect("chunks take every byte");
-        Self { deflate, bytes: 0 }
-    }
-
-    /// Deflates a filtered row.
-    pub fn write(&mut self, row: &[u8]) {
-        self.bytes += row.len() as u64;
-        self.deflate.write_data(row).expect("chunks take every byte");
-    }
-
-    /// Writes what is left of the stream, whose checksum begins with the stored first row, and the file's last chunk.
-    pub fn finish(self, first_row: &[u8]) -> Result<(), EncodingError> {
-        let mut chunks = self.deflate.finish().expect("chunks take every byte");
-        let body = chunks.pending.len() - CHECKSUM_BYTES;
-        let own = chunks.pending.split_off(body);
-        let deflated = u32::from_be_bytes([own[0], own[1], own[2], own[3]]);
-        chunks.pending.extend(adler_of_both(adler(first_row), deflated, self.bytes).to_be_bytes());
-        chunks.send(chunks.pending.len());
-        match chunks.failure {
-            Some(failure) => Err(failure),
-            None => chunks.writer.finish(),
-        }
-    }
-}
-
-impl Chunks {
-    /// Writes the first `count` pending bytes as a chunk.
-    fn send(&mut self, count: usize) {
-        if self.failure.is_none() {
-            self.failure = self.writer.write_chunk(IDAT, &self.pending[..count]).err();
-        }
-        self.pending.drain(..count);
-    }
-}
-
-impl io::Write for Chunks {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let dropped = self.drop.min(bytes.len());
-        self.drop -= dropped;
-        self.pending.extend_from_slice(&bytes[dropped..]);
-        // The last bytes may be the checksum, which is replaced.
-        if self.pending.len() >= CHUNK_BYTES + CHECKSUM_BYTES {
-            self.send(CHUNK_BYTES);
-        }
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-/// Adler-32 (RFC 1950, section 8.2).
-fn adler(bytes: &[u8]) -> u32 {
-    let (a, b) = bytes.iter().fold((1, 0), |(a, b), byte| {
-        let a = (a + u64::from(*byte)) % ADLER_MODULUS;
-        (a, (b + a) % ADLER_MODULUS)
-    });
-    (b << 16 | a) as u32
-}
-
-/// The Adler-32 of two parts, the second of `length` bytes, from those of each.
+/// The Adler-32 of two parts, the second of `length` bytes, from those of each (RFC 1950, section 8.2).
 ///
 /// The low half is 1 plus the sum of all bytes. The high half sums the low half over all bytes: over the second part
 /// it is larger by the first part's byte sum each time.
-fn adler_of_both(first: u32, second: u32, length: u64) -> u32 {
+pub(super) fn adler_of_both(first: u32, second: u32, length: u64) -> u32 {
     let halves = |sum: u32| (u64::from(sum & 0xffff), u64::from(sum >> 16));
     let ((a1, b1), (a2, b2)) = (halves(first), halves(second));
     let before = (a1 + ADLER_MODULUS - 1) % ADLER_MODULUS;
@@ -141,6 +53,15 @@ fn adler_of_both(first: u32, second: u32, length: u64) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// In the words of RFC 1950, section 8.2.
+    fn adler(bytes: &[u8]) -> u32 {
+        let (a, b) = bytes.iter().fold((1, 0), |(a, b), byte| {
+            let a = (a + u64::from(*byte)) % ADLER_MODULUS;
+            (a, (b + a) % ADLER_MODULUS)
+        });
+        (b << 16 | a) as u32
+    }
 
     #[test]
     fn adler_is_as_published_and_joins() {
@@ -154,13 +75,11 @@ mod tests {
 
     #[test]
     fn a_long_row_is_stored_in_several_blocks() {
-        assert_eq!(stored_bytes(1), 6);
-        assert_eq!(stored_bytes(0xffff), 0xffff + 5);
-        assert_eq!(stored_bytes(0x1_0000), 0x1_0000 + 10);
-        for length in [1, 0xffff, 0x1_0000, 200_000] {
+        for (length, blocks) in [(1, 1), (0xffff, 1), (0x1_0000, 2), (200_000, 4)] {
+            assert_eq!(first_bytes(length), 2 + length + 5 * blocks);
             let chunk = first_idat(&vec![7; length]);
-            // Length, type and checksum of the chunk, and zlib's header.
-            assert_eq!(chunk.len(), 12 + 2 + stored_bytes(length), "{length}");
+            // Length, type and checksum of the chunk.
+            assert_eq!(chunk.len(), 12 + first_bytes(length), "{length}");
         }
     }
 }

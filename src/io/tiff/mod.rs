@@ -2,6 +2,7 @@
 
 mod directory;
 mod read;
+mod strips;
 mod write;
 
 pub(super) use read::open;

@@ -1,6 +1,7 @@
 //! TIFF height and normal maps, read.
 
 use super::directory;
+use super::strips::{StripRows, Strips};
 use crate::error::{Error, Result};
 use crate::io::damage::{damaged, io_reason};
 use crate::io::groups::{GroupDecoder, GroupedRows};
@@ -11,8 +12,11 @@ use std::fs::File;
 use std::io::{BufReader, Seek};
 use std::path::{Path, PathBuf};
 use tiff::decoder::{ChunkType, Decoder, DecodingResult, DecodingSampleType, Limits};
-use tiff::tags::{PlanarConfiguration, Tag};
+use tiff::tags::{CompressionMethod, PhotometricInterpretation, PlanarConfiguration, Predictor, Tag};
 use tiff::{ColorType, TiffError};
+
+/// Strips up to this many bytes of samples are decoded at once.
+const LARGE_STRIP_BYTES: u32 = 1 << 20;
 
 /// A TIFF by strips or rows of tiles.
 struct TiffChunks {
@@ -87,17 +91,62 @@ pub(crate) fn open(path: &Path, max_bytes: u64) -> Result<Opened> {
     let chunk_samples = grid.chunk_width as u128 * grid.samples_of_chunk(layout) as u128;
     let chunk_bytes = chunk_samples * u128::from(bits.div_ceil(8)) * grid.chunk_rows as u128;
     let group_bytes = layout.row_bytes() as u128 * grid.chunk_rows.min(size.height()) as u128;
-    limits::check(path, size, chunk_bytes + group_bytes, max_bytes)?;
+    let strips = match decoder.get_chunk_type() {
+        ChunkType::Strip if group_bytes > LARGE_STRIP_BYTES.into() => {
+            large_strips(path, &mut decoder, layout, grid, sample_type)?
+        }
+        _ => None,
+    };
+    if strips.is_none() {
+        limits::check(path, size, chunk_bytes + group_bytes, max_bytes)?;
+    }
     let no_data = no_data(path, &mut decoder, sample_type)?;
     let profile = decoder.find_tag(Tag::IccProfile).ok().flatten().and_then(|value| value.into_u8_vec().ok());
     let mut warnings = Vec::new();
     if sample_type == Some(DecodingSampleType::F64) {
         warnings.push("its 64-bit floats are rounded to 32 bits".into());
     }
-    let chunks = TiffChunks { path: path.into(), decoder, layout, grid, chunk_bytes: chunk_bytes as u64 };
     let signed = matches!(sample_type, Some(DecodingSampleType::I8 | DecodingSampleType::I16));
     let says_srgb = profile.is_some_and(|profile| srgb::is_named_by(&profile));
-    Ok(Opened { signed, no_data, says_srgb, warnings, ..Opened::new(GroupedRows::new(chunks)) })
+    let opened = match strips {
+        Some(strips) => Opened::new(StripRows::new(path, strips, file_bytes, max_bytes)?),
+        None => {
+            let chunks = TiffChunks { path: path.into(), decoder, layout, grid, chunk_bytes: chunk_bytes as u64 };
+            Opened::new(GroupedRows::new(chunks))
+        }
+    };
+    Ok(Opened { signed, no_data, says_srgb, warnings, ..opened })
+}
+
+/// The strips of a TIFF, if they can be read row by row.
+fn large_strips(
+    path: &Path,
+    decoder: &mut Decoder<BufReader<File>>,
+    layout: Layout,
+    grid: Grid,
+    sample_type: Option<DecodingSampleType>,
+) -> Result<Option<Strips>> {
+    let black_is_zero = PhotometricInterpretation::BlackIsZero.to_u16();
+    let white_is_zero = PhotometricInterpretation::WhiteIsZero.to_u16();
+    let is_inverted = tag(path, decoder, Tag::PhotometricInterpretation, black_is_zero)? == white_is_zero;
+    let samples: usize = tag(path, decoder, Tag::SamplesPerPixel, 1)?.into();
+    let compression = tag(path, decoder, Tag::Compression, CompressionMethod::None.to_u16())?;
+    let predictor = Predictor::from_u16(tag(path, decoder, Tag::Predictor, Predictor::None.to_u16())?);
+    let (Some(sample_type), Some(predictor), false) = (sample_type, predictor, is_inverted) else { return Ok(None) };
+    let mut numbers = |tag| decoder.get_tag_u64_vec(tag).map_err(reason(path));
+    let (offsets, lengths) = (numbers(Tag::StripOffsets)?, numbers(Tag::StripByteCounts)?);
+    let strips = Strips {
+        layout,
+        sample_type,
+        byte_order: decoder.byte_order(),
+        compression: CompressionMethod::from_u16_exhaustive(compression),
+        predictor,
+        rows_per_strip: grid.chunk_rows,
+        planes: grid.planes,
+        places: offsets.into_iter().zip(lengths).map(|(offset, length)| [offset, length]).collect(),
+    };
+    let is_whole = samples == layout.per_texel() && strips.places.len() == grid.down * grid.planes;
+    Ok(Some(strips).filter(|strips| is_whole && strips.stream()))
 }
 
 /// Colours or bands of a texel, and whether alpha follows them.

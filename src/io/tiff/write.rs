@@ -62,6 +62,10 @@ impl RowEncoder for TiffEncoder {
         true
     }
 
+    fn held_bytes(&self, _: usize) -> u64 {
+        0
+    }
+
     fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
         let place = SeekFrom::Start(self.row_place(first));
         let written = self.output.seek(place).and_then(|_| self.output.write_all(rows.bytes()));

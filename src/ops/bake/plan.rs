@@ -79,6 +79,11 @@ pub(crate) struct BakePlan {
 }
 
 impl BakePlan {
+    /// Bytes of all heights.
+    pub fn map_bytes(&self) -> usize {
+        self.size.texels() * self.height_type.bytes()
+    }
+
     /// Checks the options and resolves them for a map.
     ///
     /// # Errors

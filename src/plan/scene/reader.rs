@@ -4,7 +4,7 @@ use super::{Facts, Scene, SceneMaterial, Tolerance};
 use crate::batch::{FileGlob, OUTPUT_EXTENSIONS};
 use crate::error::{Error, Result};
 use crate::exact::{Rational, Scale};
-use crate::io::{Channel, ColorSpace, RawLayout, ReadOptions};
+use crate::io::{Channel, ColorSpace, INPUT_EXTENSIONS, RawLayout, ReadOptions};
 use crate::map::{Convention, Edges};
 use crate::ops::bake::Filter;
 use crate::plan::prediction::ErrorOf;
@@ -155,7 +155,9 @@ impl Reader<'_> {
         };
         let format = text.format.map_or(Ok("png".into()), |format| {
             let wrong = |text: &str| format!("{text} is no format of a map");
-            match OUTPUT_EXTENSIONS.contains(&format.get_ref().as_str()) {
+            // A plan reads its maps again.
+            let is_read = |name: &str| OUTPUT_EXTENSIONS.contains(&name) && INPUT_EXTENSIONS.contains(&name);
+            match is_read(format.get_ref()) {
                 true => Ok(format.get_ref().clone()),
                 false => Err(self.error(format.span().start, wrong(format.get_ref()), "write png, tif or exr")),
             }

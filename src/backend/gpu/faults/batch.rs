@@ -97,6 +97,7 @@ impl Folder {
                 roughness: None,
             },
             normals: None,
+            neighbours: None,
             read: ReadOptions { raw, ..Default::default() },
             options: BakeOptions::default(),
             write: WriteOptions::default(),

@@ -1,0 +1,21 @@
+//! What a job holds in memory.
+
+use crate::backend::{Backend, RowBytes};
+use crate::stream::{BUFFERS, RowsOut};
+
+/// Rows of heights beside those of a band: its halo, what it has in common with the next one, and both ends of a map
+/// that wraps.
+const BESIDE: usize = 4;
+
+/// What a job needs whatever the size of its maps: the stacks of its threads, the tables and windows of deflate, the
+/// bytes of files that are read and written.
+const FIXED_BYTES: usize = 2 << 20;
+
+/// The most bytes that a job holds while a map of `height` rows passes through `backend` into `sinks`, without what the
+/// sources hold.
+pub(super) fn job_bytes(backend: &dyn Backend, row: RowBytes, height: usize, sinks: &[RowsOut]) -> u64 {
+    let rows = backend.band_rows(row).min(height);
+    let bands = BUFFERS * ((rows + BESIDE) * row.read + rows * row.written);
+    let held_by_sinks: u64 = sinks.iter().map(|sink| sink.held_bytes(rows)).sum();
+    (FIXED_BYTES + bands) as u64 + backend.held_bytes(row) + held_by_sinks
+}

@@ -1,0 +1,127 @@
+//! Which of many files are to be baked, and why.
+
+use super::check::check;
+use super::content::Content;
+use super::line::Line;
+use super::reason::{Freshness, Reason};
+use super::record::Record;
+use super::state::Look;
+use crate::batch::Job;
+use crate::batch::targets;
+use crate::stream::Monitor;
+use rayon::prelude::*;
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Files to bake, and those that need not be baked: their outputs are what a bake would make of them.
+///
+/// ```no_run
+/// use texbake::batch::{FreshPlan, Job};
+/// use texbake::stream::Monitor;
+///
+/// # let jobs: Vec<Job> = Vec::new();
+/// let monitor = Monitor::default();
+/// // The folder of the outputs; what was baked is remembered there, in `.texbake-baked`.
+/// let plan = FreshPlan::new(&jobs, "baked".as_ref(), false, &monitor);
+/// for (job, freshness) in jobs.iter().zip(plan.files()) {
+///     // wall_height.png: scale 8 -> 24
+///     println!("{}: {freshness}", job.input.display());
+/// }
+/// let outcomes = plan.run(8, &monitor, &|_| ());
+/// # let _ = outcomes;
+/// for warning in plan.warnings() {
+///     eprintln!("{warning}");
+/// }
+/// ```
+pub struct FreshPlan<'a> {
+    pub(super) jobs: &'a [Job],
+    pub(super) decisions: Vec<Decision>,
+    pub(super) record: Record,
+    warnings: Mutex<Vec<String>>,
+}
+
+/// What is to be done with one file.
+pub(super) enum Decision {
+    /// Nothing.
+    Fresh {
+        /// How it was baked.
+        line: Arc<Line>,
+        /// The same with new states of its files, if they have others since.
+        renewed: Option<Line>,
+    },
+    /// It is to be baked.
+    Stale { reason: Reason, inputs: Vec<Before> },
+}
+
+/// An input before it is baked.
+pub(super) struct Before {
+    pub look: Look,
+    /// Of one that could be written to again without getting another state.
+    pub content: Option<Content>,
+}
+
+impl<'a> FreshPlan<'a> {
+    /// Decides about `jobs`, whose outputs lie below `folder`; all are to be baked if that `is_forced`.
+    ///
+    /// Files are read where nothing else can tell, several at a time, until `monitor` is cancelled. Nothing is written.
+    pub fn new(jobs: &'a [Job], folder: &Path, is_forced: bool, monitor: &Monitor) -> Self {
+        let (record, warning) = Record::read(folder);
+        let decide = |(job, refusal): (&Job, Option<_>)| {
+            if let Some(error) = refusal {
+                return Decision::Stale { reason: Reason::Refused(ToString::to_string(&error)), inputs: Vec::new() };
+            }
+            let reason = match is_forced {
+                true => Reason::Forced,
+                false => match check(job, &record, monitor) {
+                    Ok(fresh) => return fresh,
+                    Err(reason) => reason,
+                },
+            };
+            let inputs = job.files().inputs.into_iter().map(|input| Before::of(input, monitor));
+            // Without one of them the bake fails, and there is nothing to remember.
+            Decision::Stale { reason, inputs: inputs.collect::<Option<_>>().unwrap_or_default() }
+        };
+        let refusals = targets::refusals(&Job::all_files(jobs));
+        let decisions = jobs.par_iter().zip(refusals).map(decide).collect();
+        Self { jobs, decisions, record, warnings: Mutex::new(warning.into_iter().collect()) }
+    }
+
+    /// What was decided about each job, in their order.
+    pub fn files(&self) -> impl Iterator<Item = Freshness> {
+        self.decisions.iter().map(Decision::freshness)
+    }
+
+    /// What is wrong with the file that remembers what was baked.
+    pub fn warnings(&self) -> Vec<String> {
+        self.warnings.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Adds a warning; what is wrong with each of many files is told once.
+    pub(super) fn warn(&self, text: String) {
+        let mut warnings = self.warnings.lock().unwrap_or_else(PoisonError::into_inner);
+        if !warnings.contains(&text) {
+            warnings.push(text);
+        }
+    }
+}
+
+impl Decision {
+    pub fn freshness(&self) -> Freshness {
+        match self {
+            Self::Fresh { .. } => Freshness::Fresh,
+            Self::Stale { reason, .. } => Freshness::Stale(reason.clone()),
+        }
+    }
+}
+
+impl Before {
+    /// Looks at an input, and reads it if it was written to just now; `None` if it cannot be read.
+    fn of(input: &Path, monitor: &Monitor) -> Option<Self> {
+        let look = Look::at(input).ok()?;
+        let content = match look.is_settled {
+            true => None,
+            false => Some(Content::read(input, &look, monitor).ok()?),
+        };
+        Some(Self { look, content })
+    }
+}

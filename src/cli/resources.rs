@@ -1,0 +1,72 @@
+//! What a run may take of the machine.
+
+use super::values::{ByteSize, value};
+use clap::Args;
+use std::num::NonZeroUsize;
+use texbake::stream::Monitor;
+use texbake::{Error, Result};
+
+/// Cores and memory of a run.
+#[derive(Args, Debug)]
+pub struct Resources {
+    /// Cores that the run takes [default: all]
+    #[arg(long, value_name = "N", help_heading = HEADING)]
+    pub threads: Option<NonZeroUsize>,
+
+    /// Most memory of the run: 512M, 2G. Files wait for each other; one that needs more by itself fails
+    /// [default: unbounded]
+    #[arg(long, value_name = "BYTES", value_parser = value::<ByteSize>, help_heading = HEADING)]
+    pub memory: Option<ByteSize>,
+}
+
+const HEADING: &str = "Where it runs";
+
+/// What the process takes besides rows and what it has already: stacks of threads, and what the allocator keeps.
+const BESIDE_ROWS: u64 = 8 << 20;
+
+impl Resources {
+    /// Keeps the run to its cores, and starts the threads that bake and compress; the first thing of a run, since
+    /// threads may run where the one that starts them may.
+    ///
+    /// # Errors
+    /// [`Error::Threads`] if the system refuses.
+    pub fn start_threads(&self) -> Result<()> {
+        let Some(threads) = self.threads else { return Ok(()) };
+        let refused = |reason: String| Error::Threads { reason };
+        #[cfg(target_os = "linux")]
+        keep_to_cores(threads.get()).map_err(|error| refused(error.to_string()))?;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global();
+        pool.map_err(|error| refused(error.to_string()))
+    }
+
+    /// What watches the bakes of the run, and bounds their memory; called once devices are open, since what they took
+    /// counts.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if nothing is left for rows.
+    pub fn monitor(&self) -> Result<Monitor> {
+        let Some(ByteSize(bytes)) = self.memory else { return Ok(Monitor::default()) };
+        let resident = memory_stats::memory_stats().map_or(0, |stats| stats.physical_mem as u64);
+        let taken = resident + BESIDE_ROWS;
+        match bytes.checked_sub(taken).filter(|left| *left > 0) {
+            Some(left) => Ok(Monitor::with_memory(left)),
+            None => {
+                let range = format!("above {}M, which the program takes before any file", taken.div_ceil(1 << 20));
+                Err(Error::Parameter { parameter: "memory", value: bytes.to_string(), range })
+            }
+        }
+    }
+}
+
+/// Lets the process, with the threads of its files, its libraries and drivers, run on `count` of its cores: others for
+/// each process, so that several of them share the machine.
+#[cfg(target_os = "linux")]
+fn keep_to_cores(count: usize) -> rustix::io::Result<()> {
+    use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity};
+    let allowed = sched_getaffinity(None)?;
+    let cores: Vec<usize> = (0..CpuSet::MAX_CPU).filter(|core| allowed.is_set(*core)).collect();
+    let first = std::process::id() as usize * count % cores.len().max(1);
+    let mut chosen = CpuSet::new();
+    cores.iter().cycle().skip(first).take(count.min(cores.len())).for_each(|core| chosen.set(*core));
+    sched_setaffinity(None, &chosen)
+}

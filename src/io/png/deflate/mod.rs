@@ -1,0 +1,136 @@
+//! Deflate for the stripes of an image: with Huffman codes made for each block and matches for runs of zeros only, or
+//! with all matches.
+//!
+//! A filtered map has hardly anything else that repeats: searching for matches takes most of the time of other
+//! encoders and wins nothing, but where it is nearly flat (`benches/png` has the figures). No crate does just this: `fdeflate` is as fast, but its
+//! codes are fixed, which costs 7 to 14 % of the size, and the Huffman-only strategy of zlib takes four times as long.
+//! And the stripes of an image, which several threads deflate, must join: every call here ends on a byte's border with
+//! a block that is not the last, where `fdeflate` and libdeflate end the whole stream.
+
+mod bits;
+mod codes;
+mod matches;
+mod runs;
+
+pub(super) use bits::BitWriter;
+
+use codes::{Code, codes};
+use runs::{Length, runs_of_zeros};
+
+/// Bytes that share codes, about: fewer follow the map more closely, more spend less on codes.
+pub(super) const LONG_BLOCK: usize = 128 << 10;
+pub(super) const SHORT_BLOCK: usize = 32 << 10;
+
+/// The most bytes of a stored block, and the bytes before them.
+pub(super) const STORED_MOST: usize = 0xffff;
+pub(super) const STORED_HEADER: usize = 5;
+
+/// Literals, the end of a block, and the lengths of matches (RFC 1951, section 3.2.5).
+const SYMBOLS: usize = 286;
+const END: usize = 256;
+
+/// Bits of a block's header as it is written here.
+const HEADER_BITS: usize = 3 + 5 + 5 + 4 + 19 * 3 + (SYMBOLS + 1) * 4;
+
+/// What repeats, and what codes are made for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Coding {
+    /// Runs of zeros; blocks of about so many bytes.
+    Literals(usize),
+    /// All that a level of zlib finds.
+    Matches(u32),
+}
+
+/// Appends `data`, deflated into blocks of which none is the last, up to a byte's border.
+pub(super) fn deflate(data: &[u8], coding: Coding, out: &mut BitWriter) {
+    match coding {
+        Coding::Matches(level) => matches::deflate(data, level, out),
+        Coding::Literals(_) if data.is_empty() => write_stored(&[], out),
+        Coding::Literals(block_bytes) => {
+            // Of equal length, lest the last one be short and its codes dear.
+            let blocks = data.len().div_ceil(block_bytes);
+            data.chunks(data.len().div_ceil(blocks)).for_each(|block| write_block(block, out));
+            // An empty stored block ends on a byte's border.
+            write_stored(&[], out);
+        }
+    }
+}
+
+fn write_block(block: &[u8], out: &mut BitWriter) {
+    let mut counts = count_bytes(block);
+    // Long runs are worth a search only where zeros are common.
+    let runs = if counts[0] as usize > block.len() / 4 { runs_of_zeros(block) } else { Vec::new() };
+    for run in &runs {
+        counts[0] -= run.matched() as u32;
+        run.lengths().for_each(|length| counts[length.symbol] += 1);
+    }
+    counts[END] = 1;
+    let codes = codes(&counts);
+    let extra: usize = runs.iter().flat_map(|run| run.lengths()).map(|length| length.extra_bits as usize + 1).sum();
+    let coded: usize = counts.iter().zip(&codes).map(|(count, code)| *count as usize * code.length() as usize).sum();
+    if (HEADER_BITS + coded + extra).div_ceil(8) > block.len() + STORED_HEADER * block.len().div_ceil(STORED_MOST) {
+        return block.chunks(STORED_MOST).for_each(|piece| write_stored(piece, out));
+    }
+    write_header(&codes, out);
+    let literals: &[Code; 256] = codes.first_chunk().expect("286 codes");
+    let mut at = 0;
+    for run in &runs {
+        out.literals(&block[at..run.start], literals);
+        run.lengths().for_each(|length| write_match(length, &codes, out));
+        at = run.start + run.matched();
+    }
+    out.literals(&block[at..], literals);
+    out.code(codes[END]);
+}
+
+/// How often each byte occurs.
+fn count_bytes(block: &[u8]) -> [u32; SYMBOLS] {
+    // A count that follows on the same one waits for it, so equal neighbours count in several places.
+    let mut places = [[0u32; 256]; 4];
+    let mut fours = block.chunks_exact(4);
+    for four in &mut fours {
+        places.iter_mut().zip(four).for_each(|(counts, byte)| counts[usize::from(*byte)] += 1);
+    }
+    fours.remainder().iter().for_each(|byte| places[0][usize::from(*byte)] += 1);
+    std::array::from_fn(|symbol| if symbol < END { places.iter().map(|counts| counts[symbol]).sum() } else { 0 })
+}
+
+/// The header of a block with codes of its own (RFC 1951, section 3.2.7), the lengths of the codes in four bits each.
+fn write_header(codes: &[Code; SYMBOLS], out: &mut BitWriter) {
+    out.bits(0b100, 3);
+    out.bits(SYMBOLS as u64 - 257, 5);
+    out.bits(0, 5); // one distance
+    out.bits(19 - 4, 4);
+    // The codes of code lengths: four bits for 0 to 15, none for 16 to 18, which repeat lengths and stand first.
+    for place in 0..19 {
+        out.bits(if place < 3 { 0 } else { 4 }, 3);
+    }
+    let distance = 1;
+    for length in codes.iter().map(|code| code.length()).chain([distance]) {
+        out.bits((length.reverse_bits() >> 28).into(), 4);
+    }
+}
+
+/// A match of the byte before.
+fn write_match(length: Length, codes: &[Code; SYMBOLS], out: &mut BitWriter) {
+    out.code(codes[length.symbol]);
+    // The only distance is 1, its code a single 0.
+    out.bits(length.extra.into(), length.extra_bits + 1);
+}
+
+/// A stored block (RFC 1951, section 3.2.4).
+fn write_stored(bytes: &[u8], out: &mut BitWriter) {
+    out.bits(0, 3);
+    out.align();
+    out.whole(&stored_header(bytes.len())[1..]);
+    out.whole(bytes);
+}
+
+/// What stands before the bytes of a stored block that begins on a byte's border and is not the last.
+pub(super) fn stored_header(length: usize) -> [u8; STORED_HEADER] {
+    let [low, high] = (length as u16).to_le_bytes();
+    [0, low, high, !low, !high]
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,150 @@
+//! Stripes: rows of an image that one thread filters and deflates by itself.
+//!
+//! A slower [`Effort`] tries all that a faster one does, and the smallest is kept: it makes no stripe larger.
+
+use super::deflate::{BitWriter, Coding, LONG_BLOCK, SHORT_BLOCK, deflate};
+use super::filter::{Choice, Filter};
+
+/// How much is tried to make a stripe small.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Effort {
+    /// One filter, and codes.
+    #[default]
+    Fast,
+    /// Several filters, and matches where a sample says that they pay.
+    Balanced,
+    /// Matches after every filter.
+    Small,
+}
+
+/// The filters that are tried. After the first, those of smooth maps: Paeth's guesses are best where maps are nearly
+/// flat or have 16 bits.
+const CHOICES: [Choice; 3] = [Choice::Fixed(Filter::Paeth), Choice::Fixed(Filter::Average), Choice::LeastSum];
+
+/// Codes alone. Short blocks follow a steep map more closely.
+const LITERALS: [Coding; 2] = [Coding::Literals(LONG_BLOCK), Coding::Literals(SHORT_BLOCK)];
+
+/// Neither level of zlib is always the better one: a longer search finds matches that take more bits than literals.
+const MATCHES: [Coding; 2] = [Coding::Matches(6), Coding::Matches(9)];
+
+/// Bytes in the middle of a stripe, from which it is guessed whether matches pay.
+const SAMPLE_BYTES: usize = 16 << 10;
+
+/// Bytes of rows in a stripe, about. Few would cost a block's codes too often, many would keep threads waiting.
+const STRIPE_BYTES: usize = 512 << 10;
+
+/// Rows in a stripe: a number that depends on nothing but their length, so that the file's bytes do so too.
+pub(super) fn stripe_rows(row_bytes: usize) -> usize {
+    (STRIPE_BYTES / row_bytes).max(1)
+}
+
+/// A stripe on its way from rows to a piece of a zlib stream; its buffers serve the next one.
+#[derive(Default)]
+pub(super) struct Stripe {
+    /// The row above, then the stripe's rows, as PNG orders their bytes.
+    rows: Vec<u8>,
+    row_bytes: usize,
+    texel_bytes: usize,
+    /// Whether the row above is not known: the stripe's first row does not look up.
+    is_first: bool,
+    /// What was filtered last.
+    filtered: Vec<u8>,
+    /// The smallest attempt so far, the Adler-32 of what was deflated, and how that was filtered; room for another.
+    best: BitWriter,
+    checksum: u32,
+    choice: Option<Choice>,
+    other: BitWriter,
+}
+
+impl Stripe {
+    /// Begins anew with rows of `row_bytes`, below the row `above` if that is known.
+    pub fn begin(&mut self, row_bytes: usize, texel_bytes: usize, above: Option<&[u8]>) {
+        (self.row_bytes, self.texel_bytes, self.is_first) = (row_bytes, texel_bytes, above.is_none());
+        self.rows.clear();
+        match above {
+            Some(above) => self.rows.extend_from_slice(above),
+            None => self.rows.resize(row_bytes, 0),
+        }
+    }
+
+    /// Room for the next row.
+    pub fn next_row(&mut self) -> &mut [u8] {
+        let start = self.rows.len();
+        self.rows.resize(start + self.row_bytes, 0);
+        &mut self.rows[start..]
+    }
+
+    /// Rows so far.
+    pub fn count(&self) -> usize {
+        self.rows.len() / self.row_bytes - 1
+    }
+
+    /// The last row, or the one above.
+    pub fn last_row(&self) -> &[u8] {
+        &self.rows[self.rows.len() - self.row_bytes..]
+    }
+
+    /// Filters and deflates the rows.
+    pub fn encode(&mut self, effort: Effort) {
+        self.choice = None;
+        let (choices, codings) = match effort {
+            Effort::Fast => (&CHOICES[..1], &LITERALS[..1]),
+            Effort::Balanced | Effort::Small => (&CHOICES[..], &LITERALS[..]),
+        };
+        for choice in choices {
+            self.filter(*choice);
+            codings.iter().for_each(|coding| self.attempt(*choice, *coding));
+            if effort == Effort::Small {
+                MATCHES.iter().for_each(|coding| self.attempt(*choice, *coding));
+            }
+        }
+        if let (Effort::Balanced, Some(choice)) = (effort, self.choice) {
+            self.filter(choice);
+            if self.matches_pay() {
+                self.attempt(choice, MATCHES[0]);
+            }
+        }
+    }
+
+    fn filter(&mut self, choice: Choice) {
+        self.filtered.clear();
+        let rows = self.rows.chunks_exact(self.row_bytes);
+        for (number, (row, above)) in rows.clone().skip(1).zip(rows).enumerate() {
+            let choice = if number == 0 && self.is_first { Choice::Fixed(Filter::Sub) } else { choice };
+            choice.apply(row, above, self.texel_bytes, &mut self.filtered);
+        }
+    }
+
+    /// Deflates what was filtered by `choice`, and keeps the result if it is the smallest.
+    fn attempt(&mut self, choice: Choice, coding: Coding) {
+        self.other.clear();
+        deflate(&self.filtered, coding, &mut self.other);
+        if self.choice.is_none() || self.other.bytes().len() < self.best.bytes().len() {
+            std::mem::swap(&mut self.best, &mut self.other);
+            self.checksum = simd_adler32::adler32(&self.filtered.as_slice());
+            self.choice = Some(choice);
+        }
+    }
+
+    /// Whether a part of the stripe is smaller with matches.
+    fn matches_pay(&mut self) -> bool {
+        let middle = self.filtered.len().saturating_sub(SAMPLE_BYTES) / 2;
+        let sample = &self.filtered[middle..][..SAMPLE_BYTES.min(self.filtered.len())];
+        let [literals, matches] = [LITERALS[1], MATCHES[0]].map(|coding| {
+            self.other.clear();
+            deflate(sample, coding, &mut self.other);
+            self.other.bytes().len()
+        });
+        matches < literals
+    }
+
+    /// The stripe's piece of the stream, once it is encoded.
+    pub fn deflated(&self) -> &[u8] {
+        self.best.bytes()
+    }
+
+    /// The Adler-32 of what was deflated, and its bytes.
+    pub fn checksum(&self) -> (u32, u64) {
+        (self.checksum, self.filtered.len() as u64)
+    }
+}

@@ -1,0 +1,11 @@
+//! Maps larger than memory, and the tiles of one: streamed results are those of maps in memory, whatever the file, and
+//! no size needs more memory.
+
+mod files;
+mod neighbours;
+#[cfg(all(feature = "cli", target_os = "linux"))]
+mod peaks;
+#[cfg(all(feature = "cli", target_os = "linux"))]
+mod sparse;
+mod streamed;
+mod strips;
