@@ -177,17 +177,14 @@ impl Baker {
                 (Edge::Wrap, height) if height > 1 && all_take_it_last => RowOrder::FirstRowLast,
                 _ => RowOrder::FromTop,
             };
+            let levels: Vec<LevelsOut<'_>> = sinks.iter_mut().map(|sink| sink.levels().map(|it| it as _)).collect();
+            if options.roughness.is_some() && levels.last().is_none_or(Option::is_none) {
+                let range = "a .ktx2 or .dds file with mips";
+                return Err(Error::parameter("roughness", "a map without mip levels", range));
+            }
             let held_map = if is_held(&plan, source.as_ref(), order) { plan.map_bytes() } else { 0 };
             let passing = job_bytes(backend, RowBytes::of_bake(&plan), plan.size.height(), &sinks);
             let _memory = turn.take(source.held_bytes() + held_map as u64 + passing, monitor)?;
-            let levels: Vec<LevelsOut<'_>> = sinks.iter_mut().map(|sink| sink.levels().map(|it| it as _)).collect();
-            if options.roughness.is_some() && levels.last().is_none_or(Option::is_none) {
-                return Err(Error::parameter(
-                    "roughness",
-                    "a map without mip levels",
-                    "a .ktx2 or .dds file with mips",
-                ));
-            }
             write_watched(sinks, &formats(&plan, options), plan.size, order, monitor, |sinks| {
                 let (sinks, beside) = beside(options, sinks, levels);
                 let bake = |bands: &mut dyn HeightBands| bake_with_levels(backend, &plan, order, bands, sinks, beside);
@@ -208,12 +205,6 @@ fn check_maps<T>(options: &BakeOptions, maps: &Maps<T>) -> Result<()> {
     Err(Error::parameter("maps", "others", "those that the options ask for"))
 }
 
-/// Whether the heights are held in memory, since their last row is needed first, and far.
-fn is_held(plan: &BakePlan, source: &dyn RowSource, order: RowOrder) -> bool {
-    let needs_last_row_first = plan.edges.y == Edge::Wrap && order == RowOrder::FromTop;
-    needs_last_row_first && !source.last_row_is_near() && plan.map_bytes() <= HELD_BYTES
-}
-
 /// The formats of all maps: the plan's and that of the roughness map.
 fn formats(plan: &BakePlan, options: &BakeOptions) -> Vec<TexelFormat> {
     plan.outputs().chain(options.roughness.map(|options| options.format.texel())).collect()
@@ -229,6 +220,12 @@ pub(super) fn beside<'s, 'c>(
     let (largest, maps) = sinks.split_last_mut().expect("a sink for each map");
     let roughness = RoughnessOut { options, largest: &mut **largest, levels: levels.pop().flatten() };
     (maps, Beside { levels, roughness: Some(roughness) })
+}
+
+/// Whether the heights are held in memory, since their last row is needed first, and far.
+fn is_held(plan: &BakePlan, source: &dyn RowSource, order: RowOrder) -> bool {
+    let needs_last_row_first = plan.edges.y == Edge::Wrap && order == RowOrder::FromTop;
+    needs_last_row_first && !source.last_row_is_near() && plan.map_bytes() <= HELD_BYTES
 }
 
 /// Bakes the rows of a source, cut into bands.

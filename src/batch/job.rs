@@ -9,7 +9,7 @@ use super::targets::{self, Files};
 use crate::baker::{Baked, Baker};
 use crate::error::{Error, Result};
 use crate::exact::Scale;
-use crate::io::{Cropped, ReadOptions, WriteOptions, create_normals_with, create_parallax_with};
+use crate::io::{Cropped, ReadOptions, WriteOptions, create_normals_with, create_parallax_with, create_roughness_with};
 use crate::map::{Edge, Edges, Maps, Size};
 use crate::ops::bake::BakeOptions;
 use crate::stream::{HeightRows, Monitor, RowsOut};
@@ -169,6 +169,9 @@ impl Job {
                 format!("{}, as for its neighbours", neighbours.edges()),
             ));
         }
+        if self.write.mips {
+            return Err(Error::parameter("mips", "on", "left out where a map has neighbours"));
+        }
         let size = open()?.size();
         let whole = Size::new(size.width() + 2, size.height() + 2)?;
         let options =
@@ -199,6 +202,9 @@ impl Job {
         };
         if self.neighbours.is_some() {
             return Err(Error::parameter("neighbours", "given", "left out, where a normal map is given"));
+        }
+        if self.write.mips {
+            return Err(Error::parameter("mips", "on", "left out where a normal map is given: levels are of slopes"));
         }
         let given = &normals.path;
         let (heights, normals) = (HeightWatch::new(&self.input, &self.read), normals.watch(Role::GivenNormals));
@@ -233,7 +239,8 @@ impl Job {
     /// A sink for each output.
     fn create(&self, size: Size) -> Result<Maps<RowsOut>> {
         self.outputs.iter().try_for_each(|path| create_folder_of(path))?;
-        let Maps { normal, parallax, .. } = &self.outputs;
+        let Maps { normal, parallax, roughness } = &self.outputs;
+        let roughness = roughness.as_ref().zip(self.options.roughness);
         let normal = normal.as_ref().zip(self.options.normal);
         let parallax = parallax.as_ref().zip(self.options.parallax);
         Ok(Maps {
@@ -241,7 +248,9 @@ impl Job {
             parallax: parallax
                 .map(|(path, format)| create_parallax_with(path, size, format, &self.write))
                 .transpose()?,
-            roughness: None,
+            roughness: roughness
+                .map(|(path, options)| create_roughness_with(path, size, options.format, &self.write))
+                .transpose()?,
         })
     }
 }

@@ -180,10 +180,14 @@ pub struct Options {
     pub compression: String,
     /// Whether there are all mip levels.
     pub mips: bool,
+    /// How the roughness of levels grows.
+    pub roughness_method: Option<String>,
+    /// Roughness of the largest level.
+    pub base_roughness: Option<String>,
+    /// How a code of the roughness map is stored.
+    pub roughness_bits: Option<String>,
     /// The blocks of texels, if any.
     pub block_compression: Option<String>,
-    /// How the roughness of the mip levels is found, if it is.
-    pub roughness: Option<String>,
     /// The tiles around the input, if it is one of a larger map.
     pub neighbours: Option<String>,
     /// The channel that was read.
@@ -378,7 +382,8 @@ impl Options {
         let BakeOptions { scale, filter, edges, normal, parallax, roughness, precision } = job.options;
         let ReadOptions { channel, color_space, raw, shrink, max_bytes } = &job.read;
         let WriteOptions { compression, mips, blocks } = job.write;
-        let maps = [normal.map(|_| MapKind::Normal), parallax.map(|_| MapKind::Parallax)];
+        let kinds = (MapKind::Normal, MapKind::Parallax, MapKind::Roughness);
+        let maps = [normal.map(|_| kinds.0), parallax.map(|_| kinds.1), roughness.map(|_| kinds.2)];
         let maps: Vec<String> = maps.into_iter().flatten().map(|kind| kind.to_string()).collect();
         Self {
             scale: scale.to_string(),
@@ -395,8 +400,10 @@ impl Options {
             precision: precision.to_string(),
             compression: compression.to_string(),
             mips,
+            roughness_method: roughness.map(|options| options.method.to_string()),
+            base_roughness: roughness.map(|options| options.base.to_string()),
+            roughness_bits: roughness.map(|options| options.format.depth.to_string()),
             block_compression: blocks.map(|blocks| blocks.to_string()),
-            roughness: roughness.map(|options| format!("{options:?}")),
             neighbours: job.neighbours.as_ref().map(ToString::to_string),
             channel: channel.as_ref().map(ToString::to_string),
             color_space: color_space.to_string(),

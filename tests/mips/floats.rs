@@ -14,7 +14,15 @@ fn assert_right(name: &str, baker: &Baker, map: &HeightMap, turn: usize) {
     let options = NormalOptions { filter: FILTERS[turn / 4 % 4], edges, ..options(scale, normal) };
     let NormalOptions { scale, filter, edges, precision, .. } = options;
     let parallax = parallax_formats()[turn / 2 % 8];
-    let both = BakeOptions { scale, filter, edges, normal: Some(normal), parallax: Some(parallax), precision };
+    let both = BakeOptions {
+        scale,
+        filter,
+        edges,
+        normal: Some(normal),
+        parallax: Some(parallax),
+        roughness: None,
+        precision,
+    };
     let what = format!("{name}, {}, {both:?}", map.size());
     let levels = baker.bake_levels(map, &both).unwrap_or_else(|error| panic!("{what}: {error}"));
     assert_levels(&what, &levels.normal.expect("normals"), &float_levels(map, &options));

@@ -34,7 +34,15 @@ fn turns() -> impl Iterator<Item = (NormalOptions, ParallaxFormat)> {
 
 fn assert_right(name: &str, baker: &Baker, map: &HeightMap, options: NormalOptions, parallax: ParallaxFormat) {
     let NormalOptions { scale, filter, edges, format, precision } = options;
-    let both = BakeOptions { scale, filter, edges, normal: Some(format), parallax: Some(parallax), precision };
+    let both = BakeOptions {
+        scale,
+        filter,
+        edges,
+        normal: Some(format),
+        parallax: Some(parallax),
+        roughness: None,
+        precision,
+    };
     let levels = baker.bake_levels(map, &both).unwrap_or_else(|error| panic!("{name}: {error}"));
     let what = format!("{name}, {} heights of {}, {both:?}", map.height_type(), map.size());
     assert_levels(&what, &levels.normal.expect("normals"), &integer_levels(map, &options));

@@ -126,7 +126,8 @@ fn gpus_bake_the_same_bytes() {
     holds(6 * FEW, inputs, |(terrain, (kind, normal, parallax), filter, edges, scale)| {
         let terrain = of_kind(terrain, kind);
         let scale = Scale::texels(scale);
-        let options = BakeOptions { scale, filter, edges, normal, parallax, precision: Precision::Exact };
+        let options =
+            BakeOptions { scale, filter, edges, normal, parallax, roughness: None, precision: Precision::Exact };
         agreed(every_baker(), |baker| bake(baker, &terrain.map()?, &options), same).expect("a bake");
     });
 }
@@ -186,6 +187,7 @@ fn fused_bakes_are_the_maps_baked_alone() {
             edges,
             normal: normal.then_some(format),
             parallax: other.then_some(parallax),
+            roughness: None,
             precision: Precision::Exact,
         });
         for subject in on_the_cpu() {
