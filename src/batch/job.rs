@@ -159,8 +159,8 @@ impl Job {
         monitor: &Monitor,
     ) -> Result<Baked> {
         if self.write.mips || options.roughness.is_some() {
-            let range = "left out of tiles with neighbours: levels are made of whole maps";
-            return Err(Error::parameter("mips", "given", range));
+            let range = "left out where a map has neighbours: its halo is for the largest level";
+            return Err(Error::parameter("mips", "on", range));
         }
         if neighbours.edges() != options.edges {
             return Err(Error::parameter(
@@ -168,9 +168,6 @@ impl Job {
                 options.edges,
                 format!("{}, as for its neighbours", neighbours.edges()),
             ));
-        }
-        if self.write.mips {
-            return Err(Error::parameter("mips", "on", "left out where a map has neighbours"));
         }
         let size = open()?.size();
         let whole = Size::new(size.width() + 2, size.height() + 2)?;
