@@ -261,8 +261,11 @@ impl Subject {
             ..BakeOptions::default()
         };
         let Room { rgb8, grey8, .. } = &mut *material.room.borrow_mut();
-        let maps =
-            Maps { normal: normal.then_some(CodesMut::U8(rgb8)), parallax: parallax.then_some(CodesMut::U8(grey8)) };
+        let maps = Maps {
+            normal: normal.then_some(CodesMut::U8(rgb8)),
+            parallax: parallax.then_some(CodesMut::U8(grey8)),
+            roughness: None,
+        };
         black_box(self.baker.bake_into(&material.heights, &options, maps)?);
         Ok(())
     }

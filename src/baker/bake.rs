@@ -6,11 +6,14 @@ use super::{Baker, Ran};
 use crate::backend::RowBytes;
 use crate::error::{Error, Result};
 use crate::exact::AxisScale;
-use crate::map::{CodesMut, Edge, HeightMap, HeightType, Maps, NormalMap, ParallaxMap, Size, TexelFormat};
-use crate::mips::bake_with_levels;
+use crate::map::{
+    CodesMut, Edge, HeightMap, HeightType, Maps, NormalMap, ParallaxMap, RoughnessMap, Size, TexelFormat,
+};
+use crate::mips::{Beside, LevelsOut, RoughnessOut, bake_with_levels};
 use crate::ops::bake::{BakeOptions, BakePlan, NormalOptions, ParallaxOptions};
 use crate::stream::{
-    BandReader, HeightBands, HeightRows, MapBands, MapSink, Monitor, RowOrder, RowSource, RowsOut, read_map_watched,
+    BandReader, CodeSink, HeightBands, HeightRows, MapBands, MapSink, Monitor, RowOrder, RowSource, RowsOut,
+    read_map_watched,
 };
 
 /// How a bake ran.
@@ -25,6 +28,9 @@ pub struct Baked {
     /// The scale that was used, and whether it is the one that was asked for.
     pub scale: AxisScale,
 }
+
+/// The maps of a bake in memory.
+pub type BakedMaps = Maps<NormalMap, ParallaxMap, RoughnessMap>;
 
 /// Maps up to this many bytes are held in memory if their last row is needed first and far; larger ones are read twice.
 const HELD_BYTES: usize = 64 << 20;
@@ -49,7 +55,7 @@ impl Baker {
     /// As [`Baker::normal`], and [`crate::Error::Parameter`] if `codes` is not of the format's depth and the map's
     /// size.
     pub fn normal_into(&self, heights: &HeightMap, options: &NormalOptions, codes: CodesMut<'_>) -> Result<Baked> {
-        self.bake_into(heights, &(*options).into(), Maps { normal: Some(codes), parallax: None })
+        self.bake_into(heights, &(*options).into(), Maps { normal: Some(codes), ..Maps::default() })
     }
 
     /// Bakes a height map into a parallax map, n_z (2h - 1), with the normals of the heights themselves.
@@ -60,11 +66,13 @@ impl Baker {
     /// As [`Baker::normal`].
     pub fn parallax(&self, heights: &HeightMap, options: &ParallaxOptions) -> Result<ParallaxMap> {
         let mut map = ParallaxMap::zeroed(heights.size(), options.format);
-        self.bake_into(heights, &(*options).into(), Maps { normal: None, parallax: Some(map.codes_mut()) })?;
+        self.bake_into(heights, &(*options).into(), Maps { parallax: Some(map.codes_mut()), ..Maps::default() })?;
         Ok(map)
     }
 
     /// Bakes a height map into the maps that the options ask for, in one pass: the same bytes as one after the other.
+    ///
+    /// A roughness map is flat here, since nothing has been filtered: [`Baker::bake_levels`] has the others.
     ///
     /// ```
     /// use texbake::{BakeOptions, Baker, Grid, HeightMap, NormalFormat, ParallaxFormat, Scale};
@@ -79,15 +87,17 @@ impl Baker {
     ///
     /// # Errors
     /// As [`Baker::normal`], and [`crate::Error::Parameter`] if no map is asked for.
-    pub fn bake(&self, heights: &HeightMap, options: &BakeOptions) -> Result<Maps<NormalMap, ParallaxMap>> {
+    pub fn bake(&self, heights: &HeightMap, options: &BakeOptions) -> Result<BakedMaps> {
         let mut normal = options.normal.map(|format| NormalMap::zeroed(heights.size(), format));
         let mut parallax = options.parallax.map(|format| ParallaxMap::zeroed(heights.size(), format));
+        let mut roughness = options.roughness.map(|options| RoughnessMap::zeroed(heights.size(), options.format));
         let codes = Maps {
             normal: normal.as_mut().map(NormalMap::codes_mut),
             parallax: parallax.as_mut().map(ParallaxMap::codes_mut),
+            roughness: roughness.as_mut().map(RoughnessMap::codes_mut),
         };
         self.bake_into(heights, options, codes)?;
-        Ok(Maps { normal, parallax })
+        Ok(Maps { normal, parallax, roughness })
     }
 
     /// Bakes a height map into the caller's memory: codes texel by texel, in rows from the top. Tells how it ran.
@@ -97,17 +107,19 @@ impl Baker {
     /// not of its format's depth and the height map's size.
     pub fn bake_into(&self, heights: &HeightMap, options: &BakeOptions, maps: Maps<CodesMut<'_>>) -> Result<Baked> {
         let plan = BakePlan::new(options, heights.size(), heights.height_type())?;
-        check_maps(&plan, &maps)?;
+        check_maps(options, &maps)?;
         let mut maps = maps.into_vec();
-        for (codes, format) in maps.iter().zip(plan.outputs()) {
+        let formats = formats(&plan, options);
+        for (codes, format) in maps.iter().zip(&formats) {
             format.check_codes(plan.size, codes.len(), codes.depth())?;
         }
         let (ran, ()) = self.run(|backend| {
             let mut bands = MapBands::new(heights, plan.edges.y, backend.map_band_rows(RowBytes::of_bake(&plan)));
-            let whole = maps.iter_mut().zip(plan.outputs()).map(|(codes, format)| whole_sink(codes, format, plan.size));
+            let whole = maps.iter_mut().zip(&formats).map(|(codes, format)| whole_sink(codes, *format, plan.size));
             let mut sinks: Vec<MapSink<'_>> = whole.collect();
-            backend.bake(&plan, &mut bands, &mut as_dyn(&mut sinks))?;
-            Ok(())
+            let mut sinks = as_dyn(&mut sinks);
+            let (sinks, beside) = beside(options, &mut sinks, Vec::new());
+            bake_with_levels(backend, &plan, RowOrder::FromTop, &mut bands, sinks, beside)
         })?;
         Ok(Baked { ran, size: plan.size, height_type: plan.height_type, scale: plan.scale })
     }
@@ -124,7 +136,7 @@ impl Baker {
         options: &NormalOptions,
         monitor: &Monitor,
     ) -> Result<Baked> {
-        let create = |size| Ok(Maps { normal: Some(create(size)?), parallax: None });
+        let create = |size| Ok(Maps { normal: Some(create(size)?), ..Maps::default() });
         self.bake_rows(open, &create, &(*options).into(), monitor)
     }
 
@@ -158,20 +170,24 @@ impl Baker {
             let source = open()?;
             let plan = BakePlan::new(options, source.size(), source.height_type())?;
             let sinks = create(plan.size)?;
-            check_maps(&plan, &sinks)?;
+            check_maps(options, &sinks)?;
             let mut sinks = sinks.into_vec();
             let all_take_it_last = sinks.iter().all(|sink| sink.takes_first_row_last());
             let order = match (plan.edges.y, plan.size.height()) {
                 (Edge::Wrap, height) if height > 1 && all_take_it_last => RowOrder::FirstRowLast,
                 _ => RowOrder::FromTop,
             };
+            let levels: Vec<LevelsOut<'_>> = sinks.iter_mut().map(|sink| sink.levels().map(|it| it as _)).collect();
+            if options.roughness.is_some() && levels.last().is_none_or(Option::is_none) {
+                let range = "a .ktx2 or .dds file with mips";
+                return Err(Error::parameter("roughness", "a map without mip levels", range));
+            }
             let held_map = if is_held(&plan, source.as_ref(), order) { plan.map_bytes() } else { 0 };
             let passing = job_bytes(backend, RowBytes::of_bake(&plan), plan.size.height(), &sinks);
             let _memory = turn.take(source.held_bytes() + held_map as u64 + passing, monitor)?;
-            let formats: Vec<TexelFormat> = plan.outputs().collect();
-            let levels = sinks.iter_mut().map(|sink| sink.levels().map(|levels| levels as _)).collect();
-            write_watched(sinks, &formats, plan.size, order, monitor, |sinks| {
-                let bake = |bands: &mut dyn HeightBands| bake_with_levels(backend, &plan, order, bands, sinks, levels);
+            write_watched(sinks, &formats(&plan, options), plan.size, order, monitor, |sinks| {
+                let (sinks, beside) = beside(options, sinks, levels);
+                let bake = |bands: &mut dyn HeightBands| bake_with_levels(backend, &plan, order, bands, sinks, beside);
                 stream(source, &plan, order, backend.band_rows(RowBytes::of_bake(&plan)), monitor, bake)
             })?;
             Ok(plan)
@@ -180,13 +196,30 @@ impl Baker {
     }
 }
 
-/// Fails unless there is something for each map of the plan, and for no other.
-fn check_maps<T>(plan: &BakePlan, maps: &Maps<T>) -> Result<()> {
-    let fits = |given: &Option<T>, asked: bool| given.is_some() == asked;
-    if fits(&maps.normal, plan.normal.is_some()) && fits(&maps.parallax, plan.parallax.is_some()) {
+/// Fails unless there is something for each map that is asked for, and for no other.
+fn check_maps<T>(options: &BakeOptions, maps: &Maps<T>) -> Result<()> {
+    let given = [maps.normal.is_some(), maps.parallax.is_some(), maps.roughness.is_some()];
+    if given == [options.normal.is_some(), options.parallax.is_some(), options.roughness.is_some()] {
         return Ok(());
     }
     Err(Error::parameter("maps", "others", "those that the options ask for"))
+}
+
+/// The formats of all maps: the plan's and that of the roughness map.
+fn formats(plan: &BakePlan, options: &BakeOptions) -> Vec<TexelFormat> {
+    plan.outputs().chain(options.roughness.map(|options| options.format.texel())).collect()
+}
+
+/// The sinks of the plan's maps, and what is made beside them: the roughness map, whose sink is the last, and levels.
+pub(super) fn beside<'s, 'c>(
+    options: &'s BakeOptions,
+    sinks: &'s mut [&'c mut dyn CodeSink],
+    mut levels: Vec<LevelsOut<'s>>,
+) -> (&'s mut [&'c mut dyn CodeSink], Beside<'s>) {
+    let Some(options) = &options.roughness else { return (sinks, Beside { levels, roughness: None }) };
+    let (largest, maps) = sinks.split_last_mut().expect("a sink for each map");
+    let roughness = RoughnessOut { options, largest: &mut **largest, levels: levels.pop().flatten() };
+    (maps, Beside { levels, roughness: Some(roughness) })
 }
 
 /// Whether the heights are held in memory, since their last row is needed first, and far.

@@ -1,10 +1,13 @@
 //! Height maps into all mip levels of their maps, in memory.
 
 use super::Baker;
+use super::bake::beside;
 use super::write::{as_dyn, whole_sink};
 use crate::backend::RowBytes;
 use crate::error::Result;
-use crate::map::{CodeMap, CodesRef, HeightMap, MapFormat, Maps, NormalMap, ParallaxMap, Size};
+use crate::map::{
+    CodeMap, CodesMut, CodesRef, HeightMap, MapFormat, Maps, NormalMap, ParallaxMap, RoughnessMap, Size, TexelFormat,
+};
 use crate::mips::bake_with_levels;
 use crate::ops::bake::{BakeOptions, BakePlan, NormalOptions};
 use crate::stream::{LevelSink, MapBands, MapSink, RowOrder};
@@ -41,52 +44,59 @@ impl Baker {
     /// Bakes a height map into all mip levels of the maps that the options ask for, from the largest to that of one texel:
     /// as [`Baker::normal_levels`].
     ///
-    /// A parallax map of a level is n_z (2h - 1) with the level's own n_z and the mean height of the area.
+    /// A parallax map of a level is n_z (2h - 1) with the level's own n_z and the mean height of the area. A roughness map
+    /// holds the roughness that stands for the slopes that a level has lost ([`RoughnessMethod`](crate::RoughnessMethod)).
     ///
     /// # Errors
     /// As [`Baker::bake`], and [`crate::Error::Parameter`] for a map of more than 2^42 texels.
-    pub fn bake_levels(
-        &self,
-        heights: &HeightMap,
-        options: &BakeOptions,
-    ) -> Result<Maps<Vec<NormalMap>, Vec<ParallaxMap>>> {
+    pub fn bake_levels(&self, heights: &HeightMap, options: &BakeOptions) -> Result<LevelMaps> {
         let plan = BakePlan::new(options, heights.size(), heights.height_type())?;
         let mut normal = options.normal.map(|format| zeroed(plan.size, format));
         let mut parallax = options.parallax.map(|format| zeroed(plan.size, format));
+        let mut roughness = options.roughness.map(|options| zeroed(plan.size, options.format));
         self.run(|backend| {
-            let (largest_normal, normal_levels) = largest(&mut normal);
-            let (largest_parallax, parallax_levels) = largest(&mut parallax);
-            let mut largest = [largest_normal.map(CodeMap::codes_mut), largest_parallax.map(CodeMap::codes_mut)];
-            let whole = largest.iter_mut().flatten().zip(plan.outputs());
-            let mut sinks: Vec<MapSink<'_>> =
-                whole.map(|(codes, format)| whole_sink(codes, format, plan.size)).collect();
-            let levels = [normal_levels.map(MemoryLevels::boxed), parallax_levels.map(MemoryLevels::boxed)];
-            let levels = levels.into_iter().filter(Option::is_some).collect();
-            let band_rows = backend.map_band_rows(RowBytes::of_bake(&plan));
-            let mut bands = MapBands::new(heights, plan.edges.y, band_rows);
-            bake_with_levels(backend, &plan, RowOrder::FromTop, &mut bands, &mut as_dyn(&mut sinks), levels)
+            let maps = [
+                normal.as_deref_mut().and_then(Levels::of),
+                parallax.as_deref_mut().and_then(Levels::of),
+                roughness.as_deref_mut().and_then(Levels::of),
+            ];
+            let (mut largest, levels): (Vec<_>, Vec<_>) =
+                maps.into_iter().flatten().map(|map| ((map.largest, map.format), Some(map.smaller))).unzip();
+            let whole = largest.iter_mut().map(|(codes, format)| whole_sink(codes, *format, plan.size));
+            let mut sinks: Vec<MapSink<'_>> = whole.collect();
+            let mut sinks = as_dyn(&mut sinks);
+            let (sinks, beside) = beside(options, &mut sinks, levels);
+            let mut bands = MapBands::new(heights, plan.edges.y, backend.map_band_rows(RowBytes::of_bake(&plan)));
+            bake_with_levels(backend, &plan, RowOrder::FromTop, &mut bands, sinks, beside)
         })?;
-        Ok(Maps { normal, parallax })
+        Ok(Maps { normal, parallax, roughness })
     }
 }
+
+/// All mip levels of the maps of a bake, the largest first.
+pub type LevelMaps = Maps<Vec<NormalMap>, Vec<ParallaxMap>, Vec<RoughnessMap>>;
 
 fn zeroed<F: MapFormat>(size: Size, format: F) -> Vec<CodeMap<F>> {
     size.levels().map(|size| CodeMap::zeroed(size, format)).collect()
 }
 
-/// The largest level of a map and the others, if there is the map.
-fn largest<F>(levels: &mut Option<Vec<CodeMap<F>>>) -> (Option<&mut CodeMap<F>>, Option<&mut [CodeMap<F>]>) {
-    levels.as_mut().and_then(|levels| levels.split_first_mut()).unzip()
+/// Room for the levels of one map.
+struct Levels<'a> {
+    largest: CodesMut<'a>,
+    format: TexelFormat,
+    smaller: Box<dyn LevelSink + 'a>,
+}
+
+impl<'a> Levels<'a> {
+    fn of<F: MapFormat + Send>(levels: &'a mut [CodeMap<F>]) -> Option<Self> {
+        let (largest, smaller) = levels.split_first_mut()?;
+        let format = largest.texel_format();
+        Some(Self { largest: largest.codes_mut(), format, smaller: Box::new(MemoryLevels(smaller)) })
+    }
 }
 
 /// The levels of a map in memory, from level 1 on.
 struct MemoryLevels<'a, F>(&'a mut [CodeMap<F>]);
-
-impl<'a, F: MapFormat + Send> MemoryLevels<'a, F> {
-    fn boxed(levels: &'a mut [CodeMap<F>]) -> Box<dyn LevelSink + 'a> {
-        Box::new(Self(levels))
-    }
-}
 
 impl<F: MapFormat + Send> LevelSink for MemoryLevels<'_, F> {
     fn write(&mut self, level: usize, first: usize, rows: CodesRef<'_>) -> Result<()> {

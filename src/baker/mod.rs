@@ -8,8 +8,9 @@ mod parallax;
 mod tangents;
 mod write;
 
-pub use bake::Baked;
+pub use bake::{Baked, BakedMaps};
 pub use blend::Blended;
+pub use levels::LevelMaps;
 
 use crate::backend::Backend;
 use crate::backend::cpu::{Cpu, Reference};

@@ -9,7 +9,7 @@ use super::targets::{self, Files};
 use crate::baker::{Baked, Baker};
 use crate::error::{Error, Result};
 use crate::exact::Scale;
-use crate::io::{Cropped, ReadOptions, WriteOptions, create_normals_with, create_parallax_with};
+use crate::io::{Cropped, ReadOptions, WriteOptions, create_normals_with, create_parallax_with, create_roughness_with};
 use crate::map::{Edge, Edges, Maps, Size};
 use crate::ops::bake::BakeOptions;
 use crate::stream::{HeightRows, Monitor, RowsOut};
@@ -158,18 +158,15 @@ impl Job {
         options: &BakeOptions,
         monitor: &Monitor,
     ) -> Result<Baked> {
+        if self.write.mips || options.roughness.is_some() {
+            let range = "left out where a map has neighbours: its halo is for the largest level";
+            return Err(Error::parameter("mips", "on", range));
+        }
         if neighbours.edges() != options.edges {
             return Err(Error::parameter(
                 "edge",
                 options.edges,
                 format!("{}, as for its neighbours", neighbours.edges()),
-            ));
-        }
-        if self.write.mips {
-            return Err(Error::parameter(
-                "mips",
-                "on",
-                "left out with --neighbours, whose halo is for the largest level",
             ));
         }
         let size = open()?.size();
@@ -179,10 +176,10 @@ impl Job {
         let open = || Ok(Box::new(neighbours.around(&self.input, open()?, &self.read)?) as HeightRows);
         let cropped = |(sink, format)| Box::new(Cropped::new(sink, size, format)) as RowsOut;
         let create = |_| {
-            let Maps { normal, parallax } = self.create(size)?;
+            let Maps { normal, parallax, .. } = self.create(size)?;
             let normal = normal.zip(options.normal.map(|format| format.texel())).map(cropped);
             let parallax = parallax.zip(options.parallax.map(|format| format.texel())).map(cropped);
-            Ok(Maps { normal, parallax })
+            Ok(Maps { normal, parallax, roughness: None })
         };
         let baked = self.baker.bake_rows(&open, &create, &options, monitor)?;
         Ok(Baked { size, ..baked })
@@ -195,13 +192,16 @@ impl Job {
         opened: &dyn Fn(Size),
         warnings: &mut Vec<String>,
     ) -> Result<Baked> {
-        let (Maps { normal: None, parallax: Some(_) }, Some(format), None) =
+        let (Maps { normal: None, parallax: Some(_), roughness: None }, Some(format), None) =
             (&self.outputs, self.options.parallax, self.options.normal)
         else {
             return Err(Error::parameter("maps", "other maps", "parallax alone, where a normal map is given"));
         };
         if self.neighbours.is_some() {
             return Err(Error::parameter("neighbours", "given", "left out, where a normal map is given"));
+        }
+        if self.write.mips {
+            return Err(Error::parameter("mips", "on", "left out where a normal map is given: levels are of slopes"));
         }
         let given = &normals.path;
         let (heights, normals) = (HeightWatch::new(&self.input, &self.read), normals.watch(Role::GivenNormals));
@@ -236,13 +236,17 @@ impl Job {
     /// A sink for each output.
     fn create(&self, size: Size) -> Result<Maps<RowsOut>> {
         self.outputs.iter().try_for_each(|path| create_folder_of(path))?;
-        let Maps { normal, parallax } = &self.outputs;
+        let Maps { normal, parallax, roughness } = &self.outputs;
+        let roughness = roughness.as_ref().zip(self.options.roughness);
         let normal = normal.as_ref().zip(self.options.normal);
         let parallax = parallax.as_ref().zip(self.options.parallax);
         Ok(Maps {
             normal: normal.map(|(path, format)| create_normals_with(path, size, format, &self.write)).transpose()?,
             parallax: parallax
                 .map(|(path, format)| create_parallax_with(path, size, format, &self.write))
+                .transpose()?,
+            roughness: roughness
+                .map(|(path, options)| create_roughness_with(path, size, options.format, &self.write))
                 .transpose()?,
         })
     }
@@ -270,7 +274,7 @@ mod tests {
         let given = NormalInput { path: "given.png".into(), read: NormalReadOptions::default() };
         let job = Job {
             input: "h.png".into(),
-            outputs: Maps { normal: Some("n.png".into()), parallax: None },
+            outputs: Maps { normal: Some("n.png".into()), parallax: None, roughness: None },
             normals: Some(given),
             neighbours: None,
             read: ReadOptions::default(),

@@ -18,14 +18,16 @@ pub enum MapKind {
     Normal,
     /// The parallax map.
     Parallax,
+    /// The roughness map of mip levels, beside another map.
+    Roughness,
 }
 
 named! {
-    MapKind "maps" { Normal = "normal", Parallax = "parallax" }
+    MapKind "maps" { Normal = "normal", Parallax = "parallax", Roughness = "roughness" }
 }
 
 /// The name of an output without its extension: text, `{stem}` for the input's name without its suffix, `{map}` for
-/// `normal` or `parallax`, and `{size}` for the resolution after the suffix (`_2k`, or nothing).
+/// `normal`, `parallax` or `roughness`, and `{size}` for the resolution after the suffix (`_2k`, or nothing).
 ///
 /// ```
 /// use texbake::batch::NameTemplate;
@@ -64,7 +66,7 @@ impl FromStr for NameTemplate {
             || text.ends_with(['/', '\\'])
         {
             let range = "a file name without extension in which {stem} and {size} stand for parts of the input's name, \
-                         and {map} for normal or parallax";
+                         and {map} for normal, parallax or roughness";
             return Err(Error::parameter("name", text, range));
         }
         Ok(Self(text.into()))
@@ -89,14 +91,20 @@ impl NameTemplate {
         }
         let output =
             |kind| maps.contains(&kind).then(|| out.join(&found.folder).join(self.name(found, kind, extension)));
-        match (output(MapKind::Normal), output(MapKind::Parallax)) {
-            (None, None) => Err(Error::parameter("maps", "none", "normal, parallax or both")),
-            (Some(normal), Some(parallax)) if normal == parallax => {
+        let kinds = [MapKind::Normal, MapKind::Parallax, MapKind::Roughness];
+        match kinds.map(output) {
+            [None, None, None] => Err(Error::parameter("maps", "none", "normal, parallax or both")),
+            [None, None, Some(_)] => Err(Error::parameter("maps", "roughness", "normal,roughness: it goes with a map")),
+            [normal, parallax, _] if normal.is_some() && normal == parallax => {
                 let range = "a name with {map} in it, which keeps the normal map and the parallax map apart, \
                              as {stem}_{map}{size}";
                 Err(Error::parameter("name", self, range))
             }
-            (normal, parallax) => Ok(Maps { normal, parallax }),
+            [normal, parallax, roughness] if roughness.is_some() && [&normal, &parallax].contains(&&roughness) => {
+                let range = "a name with {map} in it, which keeps the roughness map apart, as {stem}_{map}{size}";
+                Err(Error::parameter("name", self, range))
+            }
+            [normal, parallax, roughness] => Ok(Maps { normal, parallax, roughness }),
         }
     }
 

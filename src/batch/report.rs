@@ -180,6 +180,12 @@ pub struct Options {
     pub compression: String,
     /// Whether there are all mip levels.
     pub mips: bool,
+    /// How the roughness of levels grows.
+    pub roughness_method: Option<String>,
+    /// Roughness of the largest level.
+    pub base_roughness: Option<String>,
+    /// How a code of the roughness map is stored.
+    pub roughness_bits: Option<String>,
     /// The blocks of texels, if any.
     pub block_compression: Option<String>,
     /// The tiles around the input, if it is one of a larger map.
@@ -373,10 +379,11 @@ impl FileReport {
 impl Options {
     pub(super) fn new(job: &Job, iterations: NonZeroU32) -> Self {
         // All fields by name, so that none can be forgotten: what stands here decides what is baked again.
-        let BakeOptions { scale, filter, edges, normal, parallax, precision } = job.options;
+        let BakeOptions { scale, filter, edges, normal, parallax, roughness, precision } = job.options;
         let ReadOptions { channel, color_space, raw, shrink, max_bytes } = &job.read;
         let WriteOptions { compression, mips, blocks } = job.write;
-        let maps = [normal.map(|_| MapKind::Normal), parallax.map(|_| MapKind::Parallax)];
+        let kinds = (MapKind::Normal, MapKind::Parallax, MapKind::Roughness);
+        let maps = [normal.map(|_| kinds.0), parallax.map(|_| kinds.1), roughness.map(|_| kinds.2)];
         let maps: Vec<String> = maps.into_iter().flatten().map(|kind| kind.to_string()).collect();
         Self {
             scale: scale.to_string(),
@@ -393,6 +400,9 @@ impl Options {
             precision: precision.to_string(),
             compression: compression.to_string(),
             mips,
+            roughness_method: roughness.map(|options| options.method.to_string()),
+            base_roughness: roughness.map(|options| options.base.to_string()),
+            roughness_bits: roughness.map(|options| options.format.depth.to_string()),
             block_compression: blocks.map(|blocks| blocks.to_string()),
             neighbours: job.neighbours.as_ref().map(ToString::to_string),
             channel: channel.as_ref().map(ToString::to_string),

@@ -1,7 +1,7 @@
 //! The command line.
 
 use super::resources::Resources;
-use super::settings::{CodeChoice, Device, FileOutput, HeightInput, NormalOutput, Settings, Slope, Tiles};
+use super::settings::{CodeChoice, Device, FileOutput, HeightInput, Mips, NormalOutput, Settings, Slope, Tiles};
 use super::values::{ByteSize, MapChoice, WeightPair, choice, iterations, value};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -61,7 +61,8 @@ Examples:
   texbake normal wall.png -o normal.png --size 2.0x2.0 --depth 0.1 --bits 16
   texbake normal m.tif -o n.png --size 90000x90000 --depth 65535 --edge clamp
   texbake normal terrain.raw --raw 1025x1025:u16le -o n.tif --edge clamp
-  texbake normal wall.png -o normal.ktx2 --block-compression bc5")]
+  texbake normal wall.png -o normal.ktx2 --block-compression bc5 --mips
+  texbake normal wall.png -o n.dds --mips --roughness r.dds")]
 pub struct NormalArguments {
     /// Height map: PNG, TIFF, EXR, TGA, BMP, JPEG, WebP, or any file with --raw
     #[arg(value_name = "INPUT")]
@@ -70,6 +71,11 @@ pub struct NormalArguments {
     /// Normal map: .png, .tif, .exr, .ktx2 or .dds; missing folders are made
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
+
+    /// Roughness map of the mip levels, .ktx2 or .dds, with --mips: what averaging removes of the slopes makes a level
+    /// rougher; the largest level has the base roughness
+    #[arg(long, value_name = "FILE", help_heading = "Mip levels")]
+    pub roughness: Option<PathBuf>,
 
     #[command(flatten)]
     pub settings: Settings,
@@ -142,6 +148,9 @@ pub struct ParallaxArguments {
     #[arg(long, value_name = "CHANNELS", value_parser = choice::<Channels>(Channels::NAMES), requires = "normal")]
     #[arg(help_heading = GIVEN_NORMALS)]
     pub normal_channels: Option<Channels>,
+
+    #[command(flatten)]
+    pub mips: Mips,
 
     #[command(flatten)]
     pub file: FileOutput,
@@ -284,12 +293,13 @@ pub enum CheckPlan {
 /// What may differ from file to file in a folder.
 #[derive(Args, Debug, Clone, Default, PartialEq)]
 pub struct PerFile {
-    /// Maps to bake: normal, parallax or normal,parallax; none leaves the file out [default: normal]
+    /// Maps to bake: normal, parallax or both, with roughness for that of mip levels, as normal,roughness; none leaves
+    /// the file out [default: normal]
     #[arg(long, value_delimiter = ',', value_parser = choice::<MapChoice>(MapChoice::NAMES), help_heading = "Files")]
     #[arg(hide_possible_values = true)]
     pub maps: Option<Vec<MapChoice>>,
 
-    /// Output names; {stem} is the input's without suffix, {map} is normal or parallax, {size} the input's _2k or
+    /// Output names; {stem} is the input's without suffix, {map} is normal, parallax or roughness, {size} the input's _2k or
     /// nothing [default: {stem}_{map}{size}]
     #[arg(long, value_name = "TEMPLATE", value_parser = value::<NameTemplate>, help_heading = "Files")]
     pub name: Option<NameTemplate>,
@@ -337,7 +347,8 @@ impl PerFile {
         let CodeChoice { encoding, bits } = self.parallax().held_by(&output);
         let normal = self.settings.normal.held_by(&output);
         let file = self.settings.file.held_by(&output);
-        let settings = Settings { normal, file, ..self.settings.clone() };
+        let mips = self.settings.mips.held_by(&output);
+        let settings = Settings { normal, file, mips, ..self.settings.clone() };
         Self { parallax_encoding: encoding, parallax_bits: bits, settings, ..self.clone() }
     }
 

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 use texbake::batch::{Found, FreshPlan, Job, JsonFile, MapKind, Neighbours, Report, Search, TileFolders};
-use texbake::io::{ReadOptions, WriteOptions};
+use texbake::io::{ReadOptions, WriteOptions, check_roughness};
 use texbake::stream::Monitor;
 use texbake::{BakeOptions, Baker, Error, Maps, ParallaxFormat};
 
@@ -177,10 +177,14 @@ impl Chosen {
         let (name, format) = (each.name.clone().unwrap_or_default(), each.format.as_deref().unwrap_or("png"));
         let outputs = name.outputs(map, &maps, out, format)?;
         let place = settings.device.place()?;
-        let write = settings.file.write();
+        let write = settings.mips.write(settings.file.write());
         let normal = outputs.normal.as_ref().map(|path| settings.normal.format(path, &write)).transpose()?;
         let parallax = outputs.parallax.as_ref().map(|path| parallax(each.parallax(), path, &write)).transpose()?;
-        let options = settings.slope.bake(normal, parallax)?;
+        let roughness = outputs.roughness.as_ref().map(|path| {
+            let options = settings.roughness.options();
+            check_roughness(path, options.format, &write).map(|()| options)
+        });
+        let options = settings.slope.bake(normal, parallax, roughness.transpose()?)?;
         let neighbours = settings.tiles.around_in(folders, &map.path, &options)?;
         Ok(Some(Self { outputs, place, neighbours, options, read: settings.input.read(), write }))
     }

@@ -104,7 +104,7 @@ impl PlanCheck {
 
 impl There {
     fn new(prediction: &Prediction, map: &Found, job: Option<&Job>) -> Self {
-        let outputs = job.map_or(Maps { normal: None, parallax: None }, |job| job.outputs.clone());
+        let outputs = job.map_or(Maps::default(), |job| job.outputs.clone());
         let other = job.map_or_else(Vec::new, |job| prediction.other_settings(&job.read, &job.options));
         Self { input: map.path.clone(), outputs, other }
     }

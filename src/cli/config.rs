@@ -152,15 +152,16 @@ impl Source<'_> {
     /// `--scale=7/3` for `scale = "7/3"`, `--maps=normal,parallax` for `maps = ["normal", "parallax"]`.
     fn argument(&self, key: &Spanned<std::borrow::Cow<'_, str>>, value: &Spanned<DeValue<'_>>) -> Result<String> {
         let command = parser();
-        let mut options = command.get_arguments().filter_map(|option| option.get_long());
         let name = key.get_ref();
-        if !options.any(|option| option == name) {
+        let Some(option) = command.get_arguments().find(|option| option.get_long() == Some(name)) else {
             let known: Vec<_> = command.get_arguments().filter_map(|option| option.get_long()).collect();
             let remedy = format!("the settings are {}", known.join(", "));
             return Err(self.error(key.span().start, format!("{name} is no setting"), remedy));
-        }
+        };
+        let is_switch = option.get_possible_values().iter().any(|value| value.get_name() == "true");
         let texts: Option<Vec<String>> = match value.get_ref() {
             DeValue::Array(values) => values.iter().map(plain_text).collect(),
+            DeValue::Boolean(value) if is_switch => Some(vec![value.to_string()]),
             _ => plain_text(value).map(|text| vec![text]),
         };
         let text = texts.filter(|texts| !texts.is_empty()).map(|texts| texts.join(","));

@@ -169,7 +169,7 @@ impl MeasureArguments {
         }
         let defaults = MeasureOptions::default();
         let runs = if self.quick { 1 } else { defaults.runs };
-        let bake = self.slope.bake(Some(Default::default()), None)?;
+        let bake = self.slope.bake(Some(Default::default()), None, None)?;
         Ok(MeasureOptions {
             bake: BakeOptions { scale: bake.scale.shrunk(self.heights.read().shrink)?, ..bake },
             convention: self.convention.unwrap_or_default(),

@@ -8,16 +8,25 @@ use super::values::USUAL_ITERATIONS;
 use std::sync::Arc;
 use texbake::Maps;
 use texbake::batch::Job;
+use texbake::io::check_roughness;
 
 pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
     let (settings, resources) = (&arguments.settings, &arguments.resources);
     resources.start_threads()?;
-    let write = settings.file.write();
+    let write = settings.mips.write(settings.file.write());
     let format = settings.normal.format(&arguments.output, &write)?;
-    let options = settings.slope.bake(Some(format), None)?;
+    let roughness = arguments.roughness.as_ref().map(|path| {
+        let options = settings.roughness.options();
+        check_roughness(path, options.format, &write).map(|()| options)
+    });
+    let options = settings.slope.bake(Some(format), None, roughness.transpose()?)?;
     let job = Job {
         input: arguments.input.clone(),
-        outputs: Maps { normal: Some(arguments.output.clone()), parallax: None },
+        outputs: Maps {
+            normal: Some(arguments.output.clone()),
+            parallax: None,
+            roughness: arguments.roughness.clone(),
+        },
         normals: None,
         neighbours: settings.tiles.around(&arguments.input, &options)?,
         read: settings.input.read(),

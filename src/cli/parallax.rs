@@ -11,12 +11,12 @@ use texbake::io::NormalReadOptions;
 
 pub fn parallax(arguments: &ParallaxArguments) -> Result<Exit, Failure> {
     arguments.resources.start_threads()?;
-    let write = arguments.file.write();
+    let write = arguments.mips.write(arguments.file.write());
     let format = arguments.codes().parallax(&arguments.output, &write)?;
-    let options = arguments.slope.bake(None, Some(format))?;
+    let options = arguments.slope.bake(None, Some(format), None)?;
     let job = Job {
         input: arguments.input.clone(),
-        outputs: Maps { normal: None, parallax: Some(arguments.output.clone()) },
+        outputs: Maps { parallax: Some(arguments.output.clone()), ..Maps::default() },
         normals: given_normals(arguments),
         neighbours: arguments.tiles.around(&arguments.input, &options)?,
         read: arguments.heights.read(),

@@ -90,7 +90,7 @@ pub enum MapChoice {
 }
 
 impl MapChoice {
-    pub const NAMES: &'static [&'static str] = &["normal", "parallax", "none"];
+    pub const NAMES: &'static [&'static str] = &["normal", "parallax", "roughness", "none"];
 
     /// The maps of a list; none of "none".
     ///

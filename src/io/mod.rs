@@ -48,7 +48,7 @@ pub use raw::{RawKind, RawLayout};
 pub use texture::BlockCompression;
 pub use write::{
     Compression, WriteOptions, check_normal_format, check_normals_with, check_parallax_format, check_parallax_with,
-    create_normals, create_normals_with, create_parallax, create_parallax_with,
+    check_roughness, create_normals, create_normals_with, create_parallax, create_parallax_with, create_roughness_with,
 };
 
 use crate::error::Result;

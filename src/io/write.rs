@@ -4,7 +4,7 @@ use super::format::OutputFormat;
 use super::texture::BlockCompression;
 use super::{exr, png, texture, tiff};
 use crate::error::{Error, Result};
-use crate::map::{NormalFormat, ParallaxFormat, Size, TexelFormat};
+use crate::map::{NormalFormat, ParallaxFormat, RoughnessFormat, Size, TexelFormat};
 use crate::names::named;
 use crate::stream::RowsOut;
 use std::path::Path;
@@ -96,6 +96,32 @@ pub fn create_parallax_with(
     options: &WriteOptions,
 ) -> Result<RowsOut> {
     create_codes(path, size, format.texel(), options)
+}
+
+/// Creates a roughness map file: one unorm component, as [`create_parallax_with`] has it, of one level or of all.
+///
+/// # Errors
+/// As [`create_normals_with`].
+pub fn create_roughness_with(
+    path: &Path,
+    size: Size,
+    format: RoughnessFormat,
+    options: &WriteOptions,
+) -> Result<RowsOut> {
+    create_codes(path, size, format.texel(), options)
+}
+
+/// Fails if a file called `path` cannot hold a roughness map of mip levels; nothing is looked up or created.
+///
+/// # Errors
+/// As [`check_normals_with`], and [`crate::Error::Parameter`] without levels, for which there is no roughness to tell.
+pub fn check_roughness(path: &Path, format: RoughnessFormat, options: &WriteOptions) -> Result<()> {
+    check_codes(path, format.texel(), &WriteOptions { mips: true, ..*options })?;
+    if options.mips {
+        return Ok(());
+    }
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    Err(Error::parameter("mips", format_args!("off, for {name}"), "on: roughness is what mip levels lose"))
 }
 
 /// Fails if a normal map file called `path` cannot hold `format` with the default [`WriteOptions`]; nothing is looked

@@ -1,6 +1,6 @@
 //! Normal and parallax maps: codes with their format attached.
 
-use super::{Codes, CodesMut, CodesRef, MapFormat, NormalFormat, ParallaxFormat, Size};
+use super::{Codes, CodesMut, CodesRef, MapFormat, NormalFormat, ParallaxFormat, RoughnessFormat, Size};
 use crate::error::Result;
 
 /// A tangent-space normal map.
@@ -13,7 +13,10 @@ pub type NormalMap = CodeMap<NormalFormat>;
 /// A shader multiplies it by half the scale of the normal map.
 pub type ParallaxMap = CodeMap<ParallaxFormat>;
 
-/// A map of codes, and what they mean: [`NormalMap`] or [`ParallaxMap`].
+/// A roughness map: the roughness of each texel from 0 to 1, in rows from the top; its square is GGX's and Beckmann's alpha.
+pub type RoughnessMap = CodeMap<RoughnessFormat>;
+
+/// A map of codes, and what they mean: [`NormalMap`], [`ParallaxMap`] or [`RoughnessMap`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct CodeMap<F> {
     size: Size,
@@ -52,6 +55,11 @@ impl<F: MapFormat> CodeMap<F> {
     /// Width and height in texels.
     pub fn size(&self) -> Size {
         self.size
+    }
+
+    /// How a texel is stored.
+    pub(crate) fn texel_format(&self) -> crate::map::TexelFormat {
+        self.format.stored()
     }
 
     /// What the codes mean.

@@ -101,6 +101,15 @@ pub struct ParallaxFormat {
     pub depth: Depth,
 }
 
+/// How a roughness map is stored: one number from 0 to 1 as an unorm code, code = floor(L r + 1/2).
+///
+/// The default is 8 bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct RoughnessFormat {
+    /// How a code is stored: 8 or 16 bits.
+    pub depth: Depth,
+}
+
 /// How a texel of any map is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct TexelFormat {
@@ -112,14 +121,15 @@ pub struct TexelFormat {
     pub channels: usize,
 }
 
-/// The format of a [`super::CodeMap`]: [`NormalFormat`] or [`ParallaxFormat`].
+/// The format of a [`super::CodeMap`]: [`NormalFormat`], [`ParallaxFormat`] or [`RoughnessFormat`].
 pub trait MapFormat: Copy + sealed::Stored {}
 
 impl MapFormat for NormalFormat {}
 impl MapFormat for ParallaxFormat {}
+impl MapFormat for RoughnessFormat {}
 
 mod sealed {
-    use super::{NormalFormat, ParallaxFormat, TexelFormat};
+    use super::{NormalFormat, ParallaxFormat, RoughnessFormat, TexelFormat};
 
     /// What a format says about storage; for this crate alone.
     pub trait Stored {
@@ -133,6 +143,12 @@ mod sealed {
     }
 
     impl Stored for ParallaxFormat {
+        fn stored(&self) -> TexelFormat {
+            self.texel()
+        }
+    }
+
+    impl Stored for RoughnessFormat {
         fn stored(&self) -> TexelFormat {
             self.texel()
         }
@@ -228,6 +244,13 @@ impl ParallaxFormat {
     /// How a texel is stored.
     pub(crate) fn texel(&self) -> TexelFormat {
         TexelFormat { encoding: self.encoding, depth: self.depth, channels: 1 }
+    }
+}
+
+impl RoughnessFormat {
+    /// How a texel is stored.
+    pub(crate) fn texel(&self) -> TexelFormat {
+        TexelFormat { encoding: Encoding::Unorm, depth: self.depth, channels: 1 }
     }
 }
 

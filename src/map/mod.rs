@@ -7,10 +7,12 @@ mod grid;
 mod height;
 mod maps;
 
-pub use code_map::{CodeMap, NormalMap, ParallaxMap};
+pub use code_map::{CodeMap, NormalMap, ParallaxMap, RoughnessMap};
 pub use codes::{Codes, CodesMut, CodesRef};
 pub(crate) use format::TexelFormat;
-pub use format::{Channels, Convention, Depth, Edge, Edges, Encoding, MapFormat, NormalFormat, ParallaxFormat};
+pub use format::{
+    Channels, Convention, Depth, Edge, Edges, Encoding, MapFormat, NormalFormat, ParallaxFormat, RoughnessFormat,
+};
 pub use grid::{Grid, Size};
 pub use height::{HeightMap, HeightType, Heights, HeightsMut};
 pub use maps::Maps;

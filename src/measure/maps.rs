@@ -98,7 +98,7 @@ pub(super) fn normal_figures(
             let options = BakeOptions { normal: Some(format), parallax: None, precision, ..*options };
             let mut map = poisoned(size, format);
             let time = timed(runs, || {
-                device.bake_into(heights, &options, Maps { normal: Some(map.codes_mut()), parallax: None })
+                device.bake_into(heights, &options, Maps { normal: Some(map.codes_mut()), ..Maps::default() })
             })?;
             figures.push(NormalFigure {
                 stored: Stored::of(device, precision, format.texel(), size, time),
@@ -126,7 +126,7 @@ pub(super) fn parallax_figures(
             let options = BakeOptions { normal: None, parallax: Some(format), precision, ..*options };
             let mut map = poisoned(size, format);
             let time = timed(runs, || {
-                device.bake_into(heights, &options, Maps { normal: None, parallax: Some(map.codes_mut()) })
+                device.bake_into(heights, &options, Maps { parallax: Some(map.codes_mut()), ..Maps::default() })
             })?;
             figures.push(ParallaxFigure {
                 stored: Stored::of(device, precision, format.texel(), size, time),

@@ -1,14 +1,14 @@
-//! The levels of the maps of a bake, made beside it.
+//! The bands of a height map on their way to a backend, which leave behind what levels are made of.
 
-use super::pyramid::{Pyramid, Rows};
-use super::sample::Sample;
+use super::maps::MapLevels;
+use super::roughness::{Roughness, RoughnessOptions};
+use super::roughness_levels::RoughnessLevels;
 use crate::backend::Backend;
-use crate::backend::cpu::levels::{LevelHeight, LevelSum, planes, samples};
 use crate::error::{Error, Result};
-use crate::map::{Codes, HeightType, TexelFormat};
+use crate::map::CodesMut;
 use crate::ops::bake::BakePlan;
-use crate::stream::{Band, CodeSink, HeightBand, HeightBands, LevelSink, RowOrder};
-use rayon::prelude::*;
+use crate::stream::{CodeSink, HeightBand, HeightBands, LevelSink, RowOrder};
+use rayon::ThreadPool;
 
 /// Texels whose sums are made at a time: they stay in the second cache.
 const STRIP_TEXELS: usize = 1 << 17;
@@ -16,78 +16,90 @@ const STRIP_TEXELS: usize = 1 << 17;
 /// Most texels of a map, so that sums of 16-bit heights with any filter fit 63 bits.
 const GREATEST_TEXELS: usize = 1 << 42;
 
-/// What takes the levels of a map; `None` if none are wanted.
+/// What takes the levels of a map below its largest; `None` if none are wanted.
 pub(crate) type LevelsOut<'a> = Option<Box<dyn LevelSink + 'a>>;
 
-/// The bands of a height map on their way to a backend, and the levels of its maps.
+/// What a bake makes of a height map beside the largest level of the plan's maps.
+#[derive(Default)]
+pub(crate) struct Beside<'a> {
+    /// The smaller levels of each map of the plan.
+    pub levels: Vec<LevelsOut<'a>>,
+    /// The roughness map.
+    pub roughness: Option<RoughnessOut<'a>>,
+}
+
+/// Where a roughness map goes.
+pub(crate) struct RoughnessOut<'a> {
+    pub options: &'a RoughnessOptions,
+    pub largest: &'a mut dyn CodeSink,
+    /// Without them it is flat.
+    pub levels: LevelsOut<'a>,
+}
+
+/// Bakes all bands of a height map into the rows of the plan's maps, and what is wanted beside them.
 ///
-/// The backend bakes level 0 as if there were no others; they are the same whichever it is.
+/// The backend bakes the largest level as if there were no others. The CPU makes those: they are the same whatever the
+/// backend, and cost it a fraction of level 0.
+///
+/// # Errors
+/// What the bands or the sinks report, [`Error::Device`], and [`Error::Parameter`] for a map too large for levels or a
+/// roughness out of range.
+pub(crate) fn bake_with_levels(
+    backend: &dyn Backend,
+    plan: &BakePlan,
+    order: RowOrder,
+    bands: &mut dyn HeightBands,
+    sinks: &mut [&mut dyn CodeSink],
+    beside: Beside<'_>,
+) -> Result<()> {
+    if beside.levels.iter().all(Option::is_none) && beside.roughness.is_none() {
+        return backend.bake(plan, bands, sinks);
+    }
+    if plan.size.texels() > GREATEST_TEXELS {
+        return Err(Error::parameter("mips", plan.size, "left out for maps of more than 2^42 texels"));
+    }
+    let maps = beside.levels.iter().any(Option::is_some).then(|| MapLevels::new(plan, beside.levels));
+    let (roughness, base) = match beside.roughness {
+        None => (None, None),
+        Some(RoughnessOut { options, largest, levels }) => {
+            let roughness = Roughness::new(options, plan)?;
+            let code = roughness.base_code();
+            let levels = levels.map(|sink| RoughnessLevels::new(plan, roughness, options.format, sink));
+            (levels, Some(Flat { sink: largest, code }))
+        }
+    };
+    let threads = backend.host_threads();
+    let mut bands = MipBands { bands, plan, order, travelled: 0, maps, roughness, base, threads };
+    backend.bake(plan, &mut bands, sinks)?;
+    bands.finish()
+}
+
 struct MipBands<'a> {
     bands: &'a mut dyn HeightBands,
     plan: &'a BakePlan,
     order: RowOrder,
+    /// Rows that have passed.
     travelled: usize,
-    sums: Sums,
-    /// For each map of the plan.
-    sinks: Vec<LevelsOut<'a>>,
-    threads: Option<&'a rayon::ThreadPool>,
-}
-
-enum Sums {
-    Integers(Pyramid<i32>),
-    Floats(Pyramid<f32>),
-}
-
-impl<'a> MipBands<'a> {
-    /// The levels of each map of the plan go to `sinks`; `threads` make them, or those of the process.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] for a map of more than 2^42 texels.
-    pub fn new(
-        bands: &'a mut dyn HeightBands,
-        plan: &'a BakePlan,
-        order: RowOrder,
-        sinks: Vec<LevelsOut<'a>>,
-        threads: Option<&'a rayon::ThreadPool>,
-    ) -> Result<Self> {
-        if plan.size.texels() > GREATEST_TEXELS {
-            return Err(Error::parameter("mips", plan.size, "left out for maps of more than 2^42 texels"));
-        }
-        let sums = match plan.height_type {
-            HeightType::U8 | HeightType::U16 => Sums::Integers(Pyramid::new(plan.size, planes(plan))),
-            HeightType::F32 => Sums::Floats(Pyramid::new(plan.size, planes(plan))),
-        };
-        Ok(Self { bands, plan, order, travelled: 0, sums, sinks, threads })
-    }
-
-    /// Completes the levels once the last band has passed.
-    ///
-    /// # Errors
-    /// What the sinks report.
-    pub fn finish(self) -> Result<()> {
-        let Self { plan, sums, mut sinks, threads, .. } = self;
-        on(threads, || match sums {
-            Sums::Integers(pyramid) => write(plan, pyramid.finish(), &mut sinks),
-            Sums::Floats(pyramid) => write(plan, pyramid.finish(), &mut sinks),
-        })
-    }
+    maps: Option<MapLevels<'a>>,
+    roughness: Option<RoughnessLevels<'a>>,
+    /// The largest level of the roughness map.
+    base: Option<Flat<'a>>,
+    /// `None`: those that all of the process share.
+    threads: Option<&'a ThreadPool>,
 }
 
 impl HeightBands for MipBands<'_> {
     fn next(&mut self) -> Result<Option<HeightBand<'_>>> {
-        let Self { bands, plan, order, travelled, sums, sinks, threads } = self;
+        let Self { bands, plan, order, travelled, maps, roughness, base, threads } = self;
         let Some(band) = bands.next()? else { return Ok(None) };
+        base.as_mut().map_or(Ok(()), |base| base.fill(band.rows()))?;
         let strip_rows = (STRIP_TEXELS / plan.size.width()).max(1);
         on(*threads, || {
             for first in (0..band.rows()).step_by(strip_rows) {
                 let strip = band.part(first, strip_rows.min(band.rows() - first));
                 let row = order.row(*travelled, plan.size.height());
-                match (&strip, &mut *sums) {
-                    (HeightBand::U8(strip), Sums::Integers(pyramid)) => add(plan, pyramid, row, strip, sinks),
-                    (HeightBand::U16(strip), Sums::Integers(pyramid)) => add(plan, pyramid, row, strip, sinks),
-                    (HeightBand::F32(strip), Sums::Floats(pyramid)) => add(plan, pyramid, row, strip, sinks),
-                    _ => unreachable!("the plan was made for heights of another type"),
-                }?;
+                maps.as_mut().map_or(Ok(()), |maps| maps.add(row, &strip))?;
+                roughness.as_mut().map_or(Ok(()), |roughness| roughness.add(row, &strip))?;
                 *travelled += strip.rows();
             }
             Ok(())
@@ -96,76 +108,38 @@ impl HeightBands for MipBands<'_> {
     }
 }
 
-/// Bakes all bands of a height map into the rows of the plan's maps, and their levels into `levels`, if they are wanted.
-///
-/// # Errors
-/// What the bands or the sinks report, [`Error::Device`], and [`Error::Parameter`] for a map too large for levels.
-pub(crate) fn bake_with_levels(
-    backend: &dyn Backend,
-    plan: &BakePlan,
-    order: RowOrder,
-    bands: &mut dyn HeightBands,
-    sinks: &mut [&mut dyn CodeSink],
-    levels: Vec<LevelsOut<'_>>,
-) -> Result<()> {
-    if levels.iter().all(Option::is_none) {
-        return backend.bake(plan, bands, sinks);
+impl MipBands<'_> {
+    /// Completes the levels once the last band has passed.
+    fn finish(self) -> Result<()> {
+        let Self { maps, roughness, threads, .. } = self;
+        on(threads, || {
+            maps.map_or(Ok(()), MapLevels::finish)?;
+            roughness.map_or(Ok(()), RoughnessLevels::finish)
+        })
     }
-    let mut bands = MipBands::new(bands, plan, order, levels, backend.host_threads())?;
-    backend.bake(plan, &mut bands, sinks)?;
-    bands.finish()
+}
+
+/// A map of one code.
+struct Flat<'a> {
+    sink: &'a mut dyn CodeSink,
+    code: u32,
+}
+
+impl Flat<'_> {
+    fn fill(&mut self, rows: usize) -> Result<()> {
+        match self.sink.room(rows)? {
+            CodesMut::U8(codes) => codes.fill(self.code as u8),
+            CodesMut::U16(codes) => codes.fill(self.code as u16),
+            CodesMut::F16(_) | CodesMut::F32(_) => unreachable!("checked with the options"),
+        }
+        self.sink.filled()
+    }
 }
 
 /// Runs `job` on `threads`, or those of the process.
-fn on<T: Send>(threads: Option<&rayon::ThreadPool>, job: impl FnOnce() -> T + Send) -> T {
+fn on<T: Send>(threads: Option<&ThreadPool>, job: impl FnOnce() -> T + Send) -> T {
     match threads {
         Some(threads) => threads.install(job),
         None => job(),
     }
-}
-
-/// Adds a strip whose first row is row `row` of the map, and writes what it completes.
-fn add<T: LevelHeight>(
-    plan: &BakePlan,
-    pyramid: &mut Pyramid<T::Sum>,
-    row: usize,
-    strip: &Band<'_, T>,
-    sinks: &mut [LevelsOut<'_>],
-) -> Result<()>
-where
-    T::Sum: Sample<Sum: LevelSum>,
-{
-    let row_samples = planes(plan) * strip.width;
-    let mut strip_samples = vec![T::Sum::default(); strip.rows() * row_samples];
-    let rows = strip_samples.par_chunks_mut(row_samples).enumerate();
-    rows.for_each(|(row, row_samples)| samples(plan, strip, row, row_samples));
-    write(plan, pyramid.add(row, &strip_samples), sinks)
-}
-
-/// Writes complete rows of sums as rows of codes.
-fn write<S: Sample + LevelSum>(plan: &BakePlan, complete: Vec<Rows<S>>, sinks: &mut [LevelsOut<'_>]) -> Result<()> {
-    let formats: Vec<TexelFormat> = plan.outputs().collect();
-    for Rows { level, weight, width, rows, sums } in complete {
-        if rows.is_empty() {
-            continue;
-        }
-        let row_codes = |format: &TexelFormat| format.row_codes(width);
-        let mut maps: Vec<Codes> =
-            formats.iter().map(|format| Codes::zeroed(format.depth, rows.len() * row_codes(format))).collect();
-        let mut by_row: Vec<Vec<_>> = rows.clone().map(|_| Vec::new()).collect();
-        for (codes, format) in maps.iter_mut().zip(&formats) {
-            let rows = codes.as_mut().into_chunks(row_codes(format));
-            by_row.iter_mut().zip(rows).for_each(|(maps, codes)| maps.push(codes));
-        }
-        by_row.into_par_iter().zip(sums.par_chunks(planes(plan) * width)).for_each(|(maps, sums)| {
-            let planes: Vec<&[S]> = sums.chunks(width).collect();
-            S::codes(plan, weight, &planes, maps);
-        });
-        for (sink, codes) in sinks.iter_mut().zip(&maps) {
-            if let Some(sink) = sink {
-                sink.write(level, rows.start, codes.as_ref())?;
-            }
-        }
-    }
-    Ok(())
 }

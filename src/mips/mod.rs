@@ -13,7 +13,12 @@
 mod axis;
 mod chain;
 mod level;
+mod maps;
 mod pyramid;
+mod roughness;
+mod roughness_levels;
+mod rows;
 mod sample;
 
-pub(crate) use chain::bake_with_levels;
+pub(crate) use chain::{Beside, LevelsOut, RoughnessOut, bake_with_levels};
+pub use roughness::{RoughnessMethod, RoughnessOptions};

@@ -67,7 +67,7 @@ impl<T: Sample> Pyramid<T> {
     }
 
     /// Adds row 0 of level 0, which completes all levels: what comes back are their rows 0.
-    pub fn finish(mut self) -> Vec<Rows<T::Sum>> {
+    pub fn finish(&mut self) -> Vec<Rows<T::Sum>> {
         let first_row = std::mem::take(&mut self.first_row);
         self.sum_up(0..1, &first_row)
     }

@@ -31,7 +31,6 @@ pub use normals::{NormalSource, read_normals};
 pub(crate) use order::RowOrder;
 pub(crate) use reader::{BandReader, read_map_watched};
 pub use reader::{RowSource, read_map};
-#[cfg(feature = "cli")]
 pub(crate) use writer::{CodeSink, CodeWriter};
 pub use writer::{LevelSink, RowSink};
 

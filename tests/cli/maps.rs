@@ -214,7 +214,7 @@ fn wrong_maps_end_with_2() {
     let folder = Folder::new();
     folder.grey8("tex/a_height.png", 3, 3, bumps8);
     let cases: [(&[&str], &[&str]); 4] = [
-        (&["--maps", "bump"], &["'bump' for '--maps", "[possible values: normal, parallax, none]"]),
+        (&["--maps", "bump"], &["'bump' for '--maps", "[possible values: normal, parallax, roughness, none]"]),
         (&["--maps", ""], &["'--maps"]),
         (
             &["--maps", "parallax", "--parallax-encoding", "snorm", "--parallax-bits", "32f"],

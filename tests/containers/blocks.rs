@@ -84,8 +84,9 @@ fn errors(rgba: &[u8], decoded: &[u8]) -> (u8, f64) {
     (*errors.iter().max().unwrap(), (squares / errors.len() as f64).sqrt())
 }
 
-/// BC7 has no bound of its own: a block holds at most three lines through the codes, and its texels lie beside them. Of
-/// this map, whose normals turn by up to 0.1 from texel to texel, the errors are the same on every machine: measured here.
+/// BC7 has no bound of its own: a block holds at most three lines through the codes, and its texels lie beside them.
+/// Of this map, whose slopes change by up to 0.1 from texel to texel, the errors are the same on every machine: they are
+/// measured here.
 #[test]
 fn bc7_of_a_smooth_normal_map_is_a_few_codes_off() {
     let folder = Folder::new();

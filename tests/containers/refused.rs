@@ -20,13 +20,15 @@ fn each_refusal_names_what_is_wrong_and_what_would_do() {
             "n.ktx2",
             normal(Biased, Bits8, Xyz),
             None,
-            "encoding is biased with 8 bits, for n.ktx2: it must be unorm or snorm in KTX2 and DDS: a GPU has no biased formats; PNG and TIFF hold them",
+            "encoding is biased with 8 bits, for n.ktx2: it must be unorm or snorm in KTX2 and DDS: \
+             a GPU has no biased formats; PNG and TIFF hold them",
         ),
         (
             "n.dds",
             normal(Biased, Bits16, Xy),
             None,
-            "encoding is biased with 16 bits, for n.dds: it must be unorm or snorm in KTX2 and DDS: a GPU has no biased formats; PNG and TIFF hold them",
+            "encoding is biased with 16 bits, for n.dds: it must be unorm or snorm in KTX2 and DDS: \
+             a GPU has no biased formats; PNG and TIFF hold them",
         ),
         (
             "n.dds",
@@ -45,13 +47,15 @@ fn each_refusal_names_what_is_wrong_and_what_would_do() {
             "n.ktx2",
             normal(Snorm, Bits8, Xyz),
             Some(Bc7),
-            "encoding is snorm with 8 bits, for n.ktx2: it must be unorm in bc7 blocks, which have no signed numbers; bc5 blocks have them",
+            "encoding is snorm with 8 bits, for n.ktx2: it must be unorm in bc7 blocks, \
+             which have no signed numbers; bc5 blocks have them",
         ),
         (
             "n.ktx2",
             normal(Unorm, Bits8, Xyz),
             Some(Bc4),
-            "block-compression is bc4: it must be bc5 (x and y) or bc7 (x, y and z) for a normal map; bc4 blocks hold one component",
+            "block-compression is bc4: it must be bc5 (x and y) or bc7 (x, y and z) for a normal map; \
+             bc4 blocks hold one component",
         ),
         ("n.ktx2", normal(Unorm, Bits8, Xy), Some(Bc7), "block-compression is bc7: it must be bc5 for the channels xy"),
         ("n.ktx2", normal(Snorm, Bits8, Xy), Some(Bc4), "block-compression is bc4: it must be bc5 for the channels xy"),

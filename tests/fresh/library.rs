@@ -19,7 +19,7 @@ fn a_given_normal_map_is_an_input() {
     let parallax: PathBuf = folder.path("out/p.tif");
     let job = |read: NormalReadOptions| Job {
         input: folder.path("tex/a_height.png"),
-        outputs: Maps { normal: None, parallax: Some(parallax.clone()) },
+        outputs: Maps { normal: None, parallax: Some(parallax.clone()), roughness: None },
         normals: Some(NormalInput { path: folder.path("given.png"), read }),
         neighbours: None,
         read: ReadOptions::default(),
@@ -50,7 +50,7 @@ fn events_and_outcomes_have_the_places_of_all_jobs() {
     let folder = textures();
     let job = |name: &str| Job {
         input: folder.path(&format!("tex/{name}_height.png")),
-        outputs: Maps { normal: Some(folder.path(&format!("out/{name}.png"))), parallax: None },
+        outputs: Maps { normal: Some(folder.path(&format!("out/{name}.png"))), parallax: None, roughness: None },
         normals: None,
         neighbours: None,
         read: ReadOptions::default(),

@@ -65,10 +65,13 @@ fn a_line_that_a_kill_cut_short_costs_one_texture() {
     assert_eq!(words(&folder, &[], 3), [""; 0]);
 }
 
+/// What becomes of the bytes of a record.
+type Damage = fn(Vec<u8>) -> Vec<u8>;
+
 #[test]
 fn what_cannot_be_read_is_baked_again_with_a_warning() {
     let folder = textures();
-    let damages: [(&str, fn(Vec<u8>) -> Vec<u8>, &str, usize); 7] = [
+    let damages: [(&str, Damage, &str, usize); 7] = [
         (
             "noise",
             |_| (0..5000u32).map(|i| (i.wrapping_mul(2654435761) >> 24) as u8).collect(),

@@ -1,10 +1,10 @@
 //! What PNG files are written: the same texels and the same bytes, however the rows come, and as small as they are.
 
-use super::support::{Folder, Noise, format, write_rows};
+use super::support::{Folder, Noise, format, read_error, write_rows};
 use png::{BitDepth, ColorType};
 use std::io::Read;
 use std::path::Path;
-use texbake::io::{Compression, WriteOptions, create_normals_with, create_parallax_with};
+use texbake::io::{Compression, ReadOptions, WriteOptions, create_normals_with, create_parallax_with};
 use texbake::stream::RowSink;
 use texbake::{Channels, Codes, Depth, Encoding, ParallaxFormat, Size};
 
@@ -222,17 +222,17 @@ fn a_row_that_is_longer_than_a_stripe_comes_back() {
 
 #[test]
 fn the_bytes_depend_on_neither_threads_nor_bands_nor_the_first_rows_turn() {
-    let waves = Picture::waves([500, 900], 3, Depth::Bits8, 0.6, 3);
-    for compression in LEVELS {
+    let waves = Picture::waves([500, 700], 3, Depth::Bits8, 0.6, 3);
+    for compression in [Compression::Fast, Compression::Small] {
         let expected = waves.file(compression);
         for threads in [1, 8] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             assert!(pool.install(|| waves.file(compression)) == expected, "{compression:?}, {threads} threads");
         }
-        for rows in [7, 349, 350, 900] {
+        for rows in [7, 350, 700] {
             assert!(waves.file_in_bands(compression, rows) == expected, "{compression:?}, bands of {rows}");
         }
-        let last = (1..900).chain([0]);
+        let last = (1..700).chain([0]);
         assert!(waves.file_in_order(compression, last) == expected, "{compression:?}, row 0 last");
     }
 }
@@ -252,22 +252,22 @@ fn the_bytes_are_those_of_every_machine() {
     let bumps = |x: usize, y: usize, channel: usize| ((x * x + 3 * y * y) >> (6 + channel)) as u16 ^ (x & y) as u16;
     let picture = Picture::new([400, 700], 3, Depth::Bits8, bumps);
     let found = LEVELS.map(|compression| crc32fast::hash(&picture.file(compression)));
-    assert_eq!(found, [0; 3]);
+    assert_eq!(found, [3_486_354_769, 3_534_645_462, 595_024_120]);
 }
 
 #[test]
 fn slower_levels_are_smaller() {
-    let eight = |height, grain| Picture::waves([1024, 512], 3, Depth::Bits8, height, grain);
+    let eight = |height, grain| Picture::waves([512, 400], 3, Depth::Bits8, height, grain);
     let maps = [
         ("steep", eight(0.9, 31)),
         ("gentle", eight(0.2, 3)),
         ("nearly flat", eight(0.02, 0)),
         ("flat", eight(0.0, 0)),
-        ("16 bits", Picture::waves([1024, 256], 3, Depth::Bits16, 0.3, 90)),
-        ("parallax", Picture::waves([1024, 512], 1, Depth::Bits8, 0.5, 2)),
-        ("parallax of 16 bits", Picture::waves([1024, 512], 1, Depth::Bits16, 0.5, 50)),
-        ("xy", Picture::waves([1024, 512], 2, Depth::Bits8, 0.2, 2)),
-        ("noise", Picture::noise([1024, 512], 3, Depth::Bits8)),
+        ("16 bits", Picture::waves([512, 300], 3, Depth::Bits16, 0.3, 90)),
+        ("parallax", Picture::waves([512, 400], 1, Depth::Bits8, 0.5, 2)),
+        ("parallax of 16 bits", Picture::waves([512, 400], 1, Depth::Bits16, 0.5, 50)),
+        ("xy", Picture::waves([512, 400], 2, Depth::Bits8, 0.2, 2)),
+        ("noise", Picture::noise([512, 400], 3, Depth::Bits8)),
     ];
     for (name, map) in maps {
         let [fast, balanced, small] = LEVELS.map(|compression| map.file(compression).len());
@@ -275,7 +275,7 @@ fn slower_levels_are_smaller() {
         assert!(small <= balanced && balanced <= fast, "{name}: {small} {balanced} {fast}");
         // What repeats is found, and noise grows by little more than the headers of its blocks.
         match name {
-            "flat" => assert!(small < balanced && fast * 250 < map.samples().len(), "{small} {balanced} {fast}"),
+            "flat" => assert!(small < balanced && fast * 150 < map.samples().len(), "{small} {balanced} {fast}"),
             "nearly flat" => assert!(small * 10 < fast * 9, "{small} {fast}"),
             "noise" => assert!(fast < map.samples().len() * 1001 / 1000 + 600, "{fast}"),
             _ => assert!(fast < map.samples().len()),
@@ -288,21 +288,23 @@ fn slower_levels_are_smaller() {
 fn wrong_checksums_are_noticed() {
     let waves = Picture::waves([300, 50], 3, Depth::Bits8, 0.5, 2);
     let file = waves.file(Compression::Fast);
-    let ends = "IDAT, 9 bytes: its checksum stands before IEND's 12 bytes and its own CRC";
+    // The stream's last four bytes; behind them are the CRC of their chunk and the 12 bytes of IEND.
     let adler = file.len() - 12 - 4 - 4;
     let mut wrong = file.clone();
     wrong[adler] ^= 1;
-    assert_eq!(by_the_specification(&wrong, &waves), Err("CRC".into()), "{ends}");
+    assert_eq!(by_the_specification(&wrong, &waves), Err("CRC".into()));
+    // The chunk's name and an empty block stand before them.
     let chunk = adler - 5 - 4;
     let crc = crc32fast::hash(&wrong[chunk..adler + 4]).to_be_bytes();
     wrong[adler + 4..adler + 8].copy_from_slice(&crc);
     let refused = by_the_specification(&wrong, &waves).unwrap_err();
-    assert_ne!(refused, "CRC");
+    assert_ne!(refused, "CRC", "the inflater's own reason");
 
     let mut wrong = file.clone();
     wrong[file.len() / 2] ^= 1;
     assert_eq!(by_the_specification(&wrong, &waves), Err("CRC".into()));
     let folder = Folder::new();
-    let message = super::support::read_error(&folder.file("w.png", &wrong), &texbake::io::ReadOptions::default());
+    let options = ReadOptions { channel: Some("r".parse().unwrap()), ..Default::default() };
+    let message = read_error(&folder.file("w.png", &wrong), &options);
     assert!(message.contains("it is damaged; copy or export it again"), "{message}");
 }

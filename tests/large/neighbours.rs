@@ -92,6 +92,7 @@ impl Mosaic {
             outputs: Maps {
                 normal: options.normal.map(|_| output("normal")),
                 parallax: options.parallax.map(|_| output("parallax")),
+                roughness: None,
             },
             normals: None,
             neighbours: Some(around.unwrap()),
@@ -112,7 +113,7 @@ impl Mosaic {
     }
 
     /// Fails unless every tile is the cut of `expected`.
-    fn assert_cut(&self, expected: &Maps<NormalMap, texbake::ParallaxMap>, extension: &str, by: usize, what: &str) {
+    fn assert_cut(&self, expected: &texbake::BakedMaps, extension: &str, by: usize, what: &str) {
         let whole = [self.whole.size().width() / by, self.whole.size().height() / by];
         for place in places() {
             let (corner, tile) = (self.corner(place).map(|first| first / by), TILE.map(|side| side / by));
@@ -227,7 +228,7 @@ fn tiles_are_reduced_before_they_are_put_beside_each_other() {
         let (input, normal) = (name.clone(), folder.path().join(format!("n_{x}.png")));
         let job = Job {
             input,
-            outputs: Maps { normal: Some(normal.clone()), parallax: None },
+            outputs: Maps { normal: Some(normal.clone()), parallax: None, roughness: None },
             neighbours: Some(neighbours),
             read: read.clone(),
             ..mosaic.job([0, 0], &options, &read, "png")
@@ -287,7 +288,7 @@ fn neighbours_that_are_swapped_are_noticed() {
         let output = folder.path().join("n.png");
         let job = Job {
             input: name(4),
-            outputs: Maps { normal: Some(output.clone()), parallax: None },
+            outputs: Maps { normal: Some(output.clone()), parallax: None, roughness: None },
             normals: None,
             neighbours: Some(TileFolders::default().around(&name(4), &template, 0, &options).unwrap()),
             read: ReadOptions::default(),

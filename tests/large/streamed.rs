@@ -40,7 +40,7 @@ fn assert_streams(
     let (normal, parallax) = (options.normal.unwrap(), options.parallax.unwrap());
     let create = |size| -> Result<_> {
         let normal = Some(create_normals(&names[0], size, normal)?);
-        Ok(Maps { normal, parallax: Some(create_parallax(&names[1], size, parallax)?) })
+        Ok(Maps { normal, parallax: Some(create_parallax(&names[1], size, parallax)?), roughness: None })
     };
     let open = || Ok(open_heights(input, read)?.rows);
     let baker = Baker::cpu();

@@ -55,7 +55,7 @@ fn over_common_denominator(base: Rational, detail: Rational) -> [i32; 3] {
 }
 
 /// Zero where the magnitude is below a limit.
-fn least(limit: f32, value: f32) -> f32 {
+pub fn least(limit: f32, value: f32) -> f32 {
     if value.abs() < limit { 0.0 } else { value }
 }
 
@@ -108,13 +108,13 @@ fn formula(method: BlendMethod, [a, b, q]: [f32; 3], [x1, y1, z1]: [f32; 3], [x2
     }
 }
 
-fn unit([x, y, z]: [f32; 3]) -> [f32; 3] {
+pub fn unit([x, y, z]: [f32; 3]) -> [f32; 3] {
     let inverse = 1.0 / ((x * x + y * y) + z * z).sqrt();
     [x, y, z].map(|part| least(2f32.powi(-100), part * inverse))
 }
 
 /// v (m/2) + (c + 1)/2 rounded down, m = c = L for unorm, m = 2L and c = 0 for the signed codes; floats as they are.
-fn stored(v: f32, format: impl Format) -> u32 {
+pub fn stored(v: f32, format: impl Format) -> u32 {
     let (encoding, depth) = format.code();
     let (bits, l) = match depth {
         Depth::Float16 => return f16::from_f32(v).to_bits().into(),

@@ -7,6 +7,7 @@
 mod blend;
 mod floats;
 mod integer;
+mod mips;
 mod nearest_float;
 mod parallax;
 mod real;
@@ -18,6 +19,9 @@ mod texels;
 pub use blend::{blend, renormalised};
 pub use floats::{float_blend, float_parallax, float_parallax_with_normals};
 pub use integer::{image, ties};
+pub use mips::{
+    float_levels, float_parallax_levels, integer_levels, integer_parallax_levels, level_sizes, mean_normals,
+};
 pub use parallax::{parallax, parallax_with_normals};
 pub use real::{RealNormal, real_normals};
 pub use slopes::slope_sums;

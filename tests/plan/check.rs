@@ -221,7 +221,7 @@ fn a_check_that_is_cancelled_says_so() {
     let folder = textures();
     let text = std::fs::read_to_string(folder.path("texbake.toml")).unwrap();
     let prediction = predictions("texbake.toml".as_ref(), &text).unwrap().remove(0);
-    let (maps, monitor) = (Maps { normal: None, parallax: None }, Monitor::default());
+    let (maps, monitor) = (Maps::default(), Monitor::default());
     assert!(prediction.check(&folder.path("tex").join(&prediction.file), &maps, &monitor).is_ok());
     monitor.cancel();
     let cancelled = prediction.check(&folder.path("tex").join(&prediction.file), &maps, &monitor);

@@ -16,7 +16,11 @@ type Images = Maps<Image<NormalFormat>, Image<ParallaxFormat>>;
 
 fn bake(baker: &Baker, map: &HeightMap, options: &BakeOptions) -> Result<Images, Error> {
     let maps = baker.bake(map, options)?;
-    Ok(Maps { normal: maps.normal.as_ref().map(Image::from), parallax: maps.parallax.as_ref().map(Image::from) })
+    Ok(Maps {
+        normal: maps.normal.as_ref().map(Image::from),
+        parallax: maps.parallax.as_ref().map(Image::from),
+        ..Maps::default()
+    })
 }
 
 fn same(got: &Images, expected: &Images) -> Result<(), String> {
@@ -122,7 +126,8 @@ fn gpus_bake_the_same_bytes() {
     holds(6 * FEW, inputs, |(terrain, (kind, normal, parallax), filter, edges, scale)| {
         let terrain = of_kind(terrain, kind);
         let scale = Scale::texels(scale);
-        let options = BakeOptions { scale, filter, edges, normal, parallax, precision: Precision::Exact };
+        let options =
+            BakeOptions { scale, filter, edges, normal, parallax, roughness: None, precision: Precision::Exact };
         agreed(every_baker(), |baker| bake(baker, &terrain.map()?, &options), same).expect("a bake");
     });
 }
@@ -182,11 +187,12 @@ fn fused_bakes_are_the_maps_baked_alone() {
             edges,
             normal: normal.then_some(format),
             parallax: other.then_some(parallax),
+            roughness: None,
             precision: Precision::Exact,
         });
         for subject in on_the_cpu() {
             let bake = |options| bake(&subject.baker, &map, options).expect("a bake");
-            let expected = Maps { normal: bake(&normal).normal, parallax: bake(&alone).parallax };
+            let expected = Maps { normal: bake(&normal).normal, parallax: bake(&alone).parallax, ..Maps::default() };
             same(&bake(&both), &expected).unwrap_or_else(|report| panic!("{}: {report}", subject.name));
         }
     });

@@ -186,6 +186,7 @@ pub fn bake_options() -> impl Strategy<Value = BakeOptions> {
         edges,
         normal,
         parallax,
+        roughness: None,
         precision: Precision::Exact,
     })
 }

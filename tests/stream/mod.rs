@@ -2,3 +2,5 @@
 
 mod rows;
 mod several;
+
+pub use rows::MemorySource;

@@ -61,6 +61,7 @@ fn bake(spoil: impl Fn(&mut Sink, &str)) -> (Result<()>, usize, [Vec<u8>; 2]) {
         Ok(Maps {
             normal: sink("normal", 3 * size.width(), &bytes[0]),
             parallax: sink("parallax", size.width(), &bytes[1]),
+            roughness: None,
         })
     };
     let result = Baker::cpu().bake_rows(&open, &create, &both(), &Monitor::default()).map(drop);
@@ -108,7 +109,7 @@ fn neither_map_gets_its_name_unless_both_are_complete() {
 fn sinks_must_be_those_of_the_maps() {
     let map = heights();
     let open = || Ok(Box::new(MemorySource::new(map.clone())) as HeightRows);
-    let create = |_: Size| Ok(Maps { normal: None, parallax: None });
+    let create = |_: Size| Ok(Maps::default());
     let error = Baker::cpu().bake_rows(&open, &create, &both(), &Monitor::default()).expect_err("no sinks");
     assert_eq!(error.to_string(), "maps is others: it must be those that the options ask for");
 }

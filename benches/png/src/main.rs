@@ -2,17 +2,13 @@
 //!
 //!     png-codecs HEIGHT.png [ROUNDS]
 
-
-mod filter;
-mod huffman;
 #[macro_use]
 #[path = "../../../src/vectorised.rs"]
 mod vectorised;
 mod production;
 
 use cpu_time::ProcessTime;
-use filter::{Filter, filtered};
-use rayon::prelude::*;
+use production::{Level, filtered};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -31,8 +27,10 @@ impl Image {
 
     fn color(&self) -> (png::ColorType, png::BitDepth) {
         match self.bpp {
+            1 => (png::ColorType::Grayscale, png::BitDepth::Eight),
             2 => (png::ColorType::Grayscale, png::BitDepth::Sixteen),
-            _ => (png::ColorType::Rgb, png::BitDepth::Eight),
+            3 => (png::ColorType::Rgb, png::BitDepth::Eight),
+            _ => (png::ColorType::Rgb, png::BitDepth::Sixteen),
         }
     }
 }
@@ -70,7 +68,7 @@ fn measure(title: &str, raw: usize, rounds: usize, cases: &[Case]) {
     println!("| --- | ---: | ---: | ---: | ---: |");
     for ((case, bytes), (cpu, wall)) in cases.iter().zip(bytes).zip(&medians) {
         let (raw, out) = (raw as f64 / 1e6, bytes as f64 / 1e6);
-        println!("| {} | {:.0} | {:.2} | {:.0} | {out:.1} |", case.name, raw / cpu, medians[0].0 / cpu, raw / wall);
+        println!("| {} | {:.0} | {:.2} | {:.0} | {out:.3} |", case.name, raw / cpu, medians[0].0 / cpu, raw / wall);
     }
 }
 
@@ -80,46 +78,52 @@ fn main() {
     let rounds = arguments.next().map_or(5, |r| r.parse().expect("ROUNDS is a number"));
     let file = std::fs::read(&path).expect("the height map is there");
     let heights = decode_png(&file);
-    if std::env::var_os("EXPERIMENT").is_some() {
-        let crop = |i: &Image, n: usize| { let (w, h) = (n.min(i.width), n.min(i.height)); Image { width: w, height: h, bpp: i.bpp, samples: (0..h).flat_map(|y| i.samples[y * i.row()..][..w * i.bpp].to_vec()).collect() } };
-        let n = 1024;
-        for (name, scale) in [("steep", 100.0), ("gentle", 10.0), ("flat-ish", 0.3), ("xy", 10.01)] {
-            let normals = crop(&bake(&heights, scale), n);
-            production::experiment::run(name, &normals, name == "gentle");
-            if scale > 1.0 {
-            let mut normals = normals; if scale == 10.01 { normals.samples.iter_mut().skip(2).step_by(3).for_each(|b| *b = 0); production::experiment::run("xy", &normals, false); } let blue = Image { width: n, height: n, bpp: 1, samples: normals.samples.iter().skip(2).step_by(3).copied().collect() };
-            production::experiment::run(&format!("{name} grey"), &blue, false); }
-        }
-        production::experiment::run("16-bit heights", &crop(&heights, n), false);
-        return;
-    }
     println!("{} x {}, {} rounds", heights.width, heights.height, rounds);
     decoding("decoding 16-bit grey heights", &file, &heights, rounds);
     for (name, scale) in [("steep", 100.0), ("gentle", 10.0)] {
         let normals = bake(&heights, scale);
-        encoding(&format!("encoding RGB8 normals, {name} (scale {scale})"), &normals, rounds);
+        encoding(&format!("RGB8 normals, {name} (scale {scale})"), &normals, rounds);
         let file = encode_png(&normals, png::Compression::Balanced, png::Filter::Adaptive);
         decoding(&format!("decoding RGB8 normals, {name}"), &file, &normals, rounds);
     }
+    encoding("RGB8 normals, nearly flat (scale 0.3)", &bake(&heights, 0.3), rounds);
+    encoding("RGB16 normals, gentle (scale 10)", &bake_deep(&heights, 10.0), rounds);
+    encoding("grey 8-bit parallax, gentle (scale 10)", &bake_parallax(&heights, 10.0), rounds);
 }
 
 /// The normal map as texbake stores it, near enough for a codec.
 fn bake(heights: &Image, scale: f32) -> Image {
+    baked(heights, scale, 3, |normal, _, out| out.extend(normal.map(|v| (v * 127.5 + 128.0) as u8)))
+}
+
+/// The same with 16 bits.
+fn bake_deep(heights: &Image, scale: f32) -> Image {
+    let code = |v: f32| ((v * 32767.5 + 32768.0) as u16).to_be_bytes();
+    baked(heights, scale, 6, |normal, _, out| out.extend(normal.into_iter().flat_map(code)))
+}
+
+/// The parallax map, biased.
+fn bake_parallax(heights: &Image, scale: f32) -> Image {
+    baked(heights, scale, 1, |[_, _, z], h, out| out.push((z * (2.0 * h - 1.0) * 127.0 + 128.5) as u8))
+}
+
+/// Texels of `bpp` bytes from the normal and the height at each place.
+fn baked(heights: &Image, scale: f32, bpp: usize, texel: impl Fn([f32; 3], f32, &mut Vec<u8>)) -> Image {
     let (w, h) = (heights.width, heights.height);
     let height = |x: usize, y: usize| {
         let at = (y % h * w + x % w) * 2;
         f32::from(u16::from_be_bytes([heights.samples[at], heights.samples[at + 1]])) / 65535.0
     };
-    let mut samples = Vec::with_capacity(w * h * 3);
+    let mut samples = Vec::with_capacity(w * h * bpp);
     for y in 0..h {
         for x in 0..w {
             let dx = (height(x + 1, y) - height(x + w - 1, y)) * scale / 2.0;
             let dy = (height(x, y + 1) - height(x, y + h - 1)) * scale / 2.0;
             let inverse = 1.0 / (dx * dx + dy * dy + 1.0).sqrt();
-            samples.extend([-dx, dy, 1.0].map(|v| (v * inverse * 127.5 + 128.0) as u8));
+            texel([-dx, dy, 1.0].map(|v| v * inverse), height(x, y), &mut samples);
         }
     }
-    Image { width: w, height: h, bpp: 3, samples }
+    Image { width: w, height: h, bpp, samples }
 }
 
 // ---------------------------------------------------------------------------------------------------------- decoding
@@ -203,60 +207,35 @@ fn idat(file: &[u8]) -> Vec<u8> {
 // ---------------------------------------------------------------------------------------------------------- encoding
 
 fn encoding(title: &str, image: &Image, rounds: usize) {
-    use png::Compression::{Balanced, Fast, Fastest, NoCompression};
-    let pool = threads(2);
-    let pool = &pool;
-    let mut cases = Vec::new();
-    cases.push(case("`png` Fastest (its own filter)", move || encode_png(image, Fastest, None).len()));
-    cases.push(case("`png` Fast (its own filter)", move || encode_png(image, Fast, None).len()));
-    cases.push(case("`png` NoCompression", move || encode_png(image, NoCompression, None).len()));
-    for filter in [png::Filter::NoFilter, png::Filter::Sub, png::Filter::Up, png::Filter::Paeth, png::Filter::Adaptive]
-    {
-        cases.push(case(format!("`png` Fast {filter:?}"), move || encode_png(image, Fast, Some(filter)).len()));
+    let (one, two) = (&threads(1), &threads(2));
+    let mut cases = vec![
+        case("texbake fast", move || production::encode(image, Level::Fast, one)),
+        case("texbake balanced", move || production::encode(image, Level::Balanced, one)),
+        case("texbake small", move || production::encode(image, Level::Small, one)),
+        case("texbake fast, 2 threads", move || production::encode(image, Level::Fast, two)),
+        case("`png` Fast (fdeflate), Paeth", || encode_png(image, png::Compression::Fast, png::Filter::Paeth).len()),
+        case("`png` Fast (fdeflate), its own filter", || encode_png(image, png::Compression::Fast, None).len()),
+        case("`png` Balanced, adaptive (zlib-rs 6)", || {
+            encode_png(image, png::Compression::Balanced, png::Filter::Adaptive).len()
+        }),
+        case("`png` level 9, adaptive (zlib-rs)", || encode_png_level(image, 9, png::Filter::Adaptive).len()),
+        case("zlib-rs Huffman only, Paeth", || {
+            stripes(image, |data| deflate_zlib_rs(data, 1, zlib_rs::Strategy::HuffmanOnly)).len()
+        }),
+    ];
+    for level in [1, 2, 6] {
+        let deflate = move |data: &[u8]| deflate_zlib_rs(data, level, zlib_rs::Strategy::Default);
+        cases.push(case(format!("zlib-rs {level}, Paeth"), move || stripes(image, deflate).len()));
     }
-    cases.push(case("`png` Level(1) Sub (flate2 on zlib-rs)", move || {
-        encode_png_level(image, 1, png::Filter::Sub).len()
-    }));
-    cases.push(case("`png` Balanced Adaptive (zlib-rs 6)", move || {
-        encode_png(image, Balanced, Some(png::Filter::Adaptive)).len()
-    }));
-    for filter in [Filter::None, Filter::Sub, Filter::Up, Filter::Paeth] {
-        for level in 1..=3 {
-            cases.push(case(format!("zlib-rs {level} {filter:?}"), move || {
-                stripes(image, filter, |data| deflate_zlib_rs(data, level, zlib_rs::Strategy::Default)).len()
-            }));
-        }
-        cases.push(case(format!("zlib-rs Huffman only {filter:?}"), move || {
-            stripes(image, filter, |data| deflate_zlib_rs(data, 1, zlib_rs::Strategy::HuffmanOnly)).len()
-        }));
-        for level in 1..=4 {
-            cases
-                .push(case(format!("libdeflate {level} {filter:?}"), move || deflate_libdeflate(image, filter, level)));
-        }
-        cases.push(case(format!("miniz_oxide 1 {filter:?}"), move || stripes(image, filter, deflate_miniz).len()));
+    for level in [1, 4, 8] {
+        cases.push(case(format!("libdeflate {level}, Paeth"), move || deflate_libdeflate(image, level)));
     }
-    assert!(inflates(image, Filter::Paeth, |d| deflate_zlib_rs(d, 2, zlib_rs::Strategy::Default)), "zlib-rs");
-    assert!(inflates(image, Filter::Paeth, deflate_miniz), "miniz_oxide");
-    for filter in [Filter::None, Filter::Sub, Filter::Up, Filter::Paeth, Filter::Least, Filter::Sampled] {
-        cases.push(case(format!("own Huffman {filter:?}"), move || {
-            stripes(image, filter, |data| huffman::deflate(data, true)).len()
-        }));
-        assert!(inflates(image, filter, |data| huffman::deflate(data, true)), "own Huffman {filter:?}");
+    assert!(inflates(image, |d| deflate_zlib_rs(d, 2, zlib_rs::Strategy::Default)), "zlib-rs");
+    assert!(inflates(image, deflate_miniz), "miniz_oxide");
+    cases.push(case("miniz_oxide 1, Paeth", move || stripes(image, deflate_miniz).len()));
+    if image.bpp == 3 {
+        cases.push(case("mtpng Fast, 1 thread", move || encode_mtpng(image)));
     }
-    let (paeth, two) = (Filter::Paeth, "2 threads, Paeth");
-    cases.push(case(format!("own Huffman, {two}"), move || {
-        stripes_on(pool, image, paeth, |data| huffman::deflate(data, true)).len()
-    }));
-    cases.push(case(format!("zlib-rs 2, {two}"), move || {
-        stripes_on(pool, image, paeth, |data| deflate_zlib_rs(data, 2, zlib_rs::Strategy::Default)).len()
-    }));
-    cases.push(case(format!("miniz_oxide 1, {two}"), move || stripes_on(pool, image, paeth, deflate_miniz).len()));
-    let own = |data: &[u8]| huffman::deflate(data, true);
-    assert!(stripes(image, paeth, own) == stripes_on(pool, image, paeth, own), "threads change no byte");
-    cases.push(case("filter alone: Up", move || filtered(Filter::Up, &image.samples, None, image.row(), 3).len()));
-    cases
-        .push(case("filter alone: Paeth", move || filtered(Filter::Paeth, &image.samples, None, image.row(), 3).len()));
-    cases.push(case("mtpng Fast, 1 thread", move || encode_mtpng(image)));
     measure(title, image.samples.len(), rounds, &cases);
 }
 
@@ -311,21 +290,8 @@ fn finish((out, encoder): (Shared, png::Encoder<'static, SharedWriter>), image: 
 const STRIPE: usize = 128;
 
 /// One zlib stream from stripes that are filtered and deflated by themselves.
-fn stripes(image: &Image, filter: Filter, deflate: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
-    joined((0..image.height).step_by(STRIPE).map(|first| stripe(image, filter, first, &deflate)))
-}
-
-/// The same stream, its stripes deflated on `pool`.
-fn stripes_on(
-    pool: &rayon::ThreadPool,
-    image: &Image,
-    filter: Filter,
-    deflate: impl Fn(&[u8]) -> Vec<u8> + Sync,
-) -> Vec<u8> {
-    let firsts: Vec<usize> = (0..image.height).step_by(STRIPE).collect();
-    let stripes: Vec<Stripe> =
-        pool.install(|| firsts.into_par_iter().map(|first| stripe(image, filter, first, &deflate)).collect());
-    joined(stripes.into_iter())
+fn stripes(image: &Image, deflate: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
+    joined((0..image.height).step_by(STRIPE).map(|first| stripe(image, first, &deflate)))
 }
 
 /// A deflated stripe, with what the stream's checksum needs of it.
@@ -335,11 +301,11 @@ struct Stripe {
     length: usize,
 }
 
-fn stripe(image: &Image, filter: Filter, first: usize, deflate: impl Fn(&[u8]) -> Vec<u8>) -> Stripe {
+fn stripe(image: &Image, first: usize, deflate: impl Fn(&[u8]) -> Vec<u8>) -> Stripe {
     let row = image.row();
     let rows = &image.samples[first * row..(first + STRIPE).min(image.height) * row];
     let above = (first > 0).then(|| &image.samples[(first - 1) * row..first * row]);
-    let data = filtered(filter, rows, above, row, image.bpp);
+    let data = filtered(rows, above, row, image.bpp);
     let deflated = deflate(&data);
     // The checksum of the chunk that would hold the stripe.
     black_box(crc32fast::hash(&deflated));
@@ -371,13 +337,11 @@ fn adler_of_both(first: u32, second: u32, length: usize) -> u32 {
 }
 
 /// Whether the stripes' stream inflates to the filtered rows.
-fn inflates(image: &Image, filter: Filter, deflate: impl Fn(&[u8]) -> Vec<u8>) -> bool {
-    let plain: Vec<u8> = (0..image.height)
-        .step_by(STRIPE)
-        .flat_map(|first| stripe(image, filter, first, <[u8]>::to_vec).deflated)
-        .collect();
+fn inflates(image: &Image, deflate: impl Fn(&[u8]) -> Vec<u8>) -> bool {
+    let plain: Vec<u8> =
+        (0..image.height).step_by(STRIPE).flat_map(|first| stripe(image, first, <[u8]>::to_vec).deflated).collect();
     let mut out = vec![0; plain.len()];
-    let stream = stripes(image, filter, deflate);
+    let stream = stripes(image, deflate);
     libdeflater::Decompressor::new().zlib_decompress(&stream, &mut out).is_ok() && out == plain
 }
 
@@ -392,8 +356,8 @@ fn deflate_zlib_rs(data: &[u8], level: i32, strategy: zlib_rs::Strategy) -> Vec<
 }
 
 /// libdeflate ends every stream, so its stripes do not concatenate; the whole image at once.
-fn deflate_libdeflate(image: &Image, filter: Filter, level: i32) -> usize {
-    let data = filtered(filter, &image.samples, None, image.row(), image.bpp);
+fn deflate_libdeflate(image: &Image, level: i32) -> usize {
+    let data = filtered(&image.samples, None, image.row(), image.bpp);
     let mut compressor = libdeflater::Compressor::new(libdeflater::CompressionLvl::new(level).expect("a level"));
     let mut out = vec![0; compressor.zlib_compress_bound(data.len())];
     let length = compressor.zlib_compress(&data, &mut out).expect("room");

@@ -51,6 +51,17 @@ pub(crate) fn samples<T: LevelHeight>(plan: &BakePlan, strip: &Band<'_, T>, row:
     relief.iter_mut().zip(strip.row(row as isize)).for_each(|(relief, height)| *relief = height.relief());
 }
 
+/// Gx and Gy of the texels of a row of a strip.
+pub(crate) fn sums_of_row<T: LevelHeight>(
+    plan: &BakePlan,
+    strip: &Band<'_, T>,
+    row: usize,
+) -> impl Iterator<Item = [T::Sum; 2]> {
+    let [mut gx, mut gy] = [vec![T::Sum::default(); strip.width], vec![T::Sum::default(); strip.width]];
+    sums_of_columns(plan, strip, row, 0, [&mut gx, &mut gy]);
+    gx.into_iter().zip(gy).map(|(gx, gy)| [gx, gy])
+}
+
 /// Sums over a texel, of which the codes of a level are made.
 pub(crate) trait LevelSum: Copy + Send + Sync {
     /// The codes of some texels: `sums` holds Gx, Gy and the relief of each, times weights that add up to `weight`.

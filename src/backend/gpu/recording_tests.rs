@@ -65,7 +65,7 @@ fn bakes() -> Vec<(String, Recording)> {
             }
             let map = self_test::noise(heights).unwrap();
             let edges = Edges::both(edge);
-            let options = BakeOptions { scale: steep, filter, edges, normal, parallax, precision };
+            let options = BakeOptions { scale: steep, filter, edges, normal, parallax, roughness: None, precision };
             let recording = one(|baker| baker.bake(&map, &options));
             let name = format!("bake, {precision}, {}, {filter}, {edge}", recording.formats);
             recordings.push((name, recording));

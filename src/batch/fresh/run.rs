@@ -84,8 +84,7 @@ impl FreshPlan<'_> {
     /// Remembers how a job was baked, unless an input changed in the meantime.
     fn remember(&self, place: usize, outcome: &Outcome) {
         let (Ok(baked), Decision::Stale { inputs, .. }) = (&outcome.result, &self.decisions[place]) else { return };
-        let line = self.line(&self.jobs[place], inputs, baked, &outcome.warnings);
-        let Some(line) = line else { return };
+        let Some(line) = self.line(&self.jobs[place], inputs, baked, &outcome.warnings) else { return };
         self.record.add(&[line]).unwrap_or_else(|error| {
             self.warn(format!("{error}: what is baked may be baked again the next time"));
         });

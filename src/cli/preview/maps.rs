@@ -42,7 +42,7 @@ impl Shown {
         let heights = heights.transpose()?;
         let format = normal_format(settings)?;
         let parallax = Some(ParallaxFormat::default());
-        let options = settings.slope.bake(Some(format), parallax)?;
+        let options = settings.slope.bake(Some(format), parallax, None)?;
         // --scale is in texels of the file.
         let options = BakeOptions { scale: options.scale.shrunk(settings.input.read().shrink)?, ..options };
         if settings.slope.scale.is_none() && settings.slope.size.is_none() && !arguments.quiet {

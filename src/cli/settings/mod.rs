@@ -6,6 +6,7 @@ mod device;
 mod file;
 mod formats;
 mod input;
+mod mips;
 mod slope;
 mod tiles;
 
@@ -13,11 +14,12 @@ pub use device::{Backend, Device, Place, open_baker};
 pub use file::FileOutput;
 pub use formats::{CodeChoice, NormalOutput};
 pub use input::{HeightInput, max_bytes};
+pub use mips::{Mips, Roughness};
 pub use slope::Slope;
 pub use tiles::Tiles;
 
 use clap::Args;
-use texbake::{BakeOptions, Baker, Grid, HeightMap, NormalFormat, ParallaxFormat, Result};
+use texbake::{BakeOptions, Baker, Grid, HeightMap, NormalFormat, ParallaxFormat, Result, RoughnessOptions};
 
 /// What was set; `None` leaves it to the next source, and at last to the default.
 #[derive(Args, Debug, Clone, Default, PartialEq)]
@@ -30,6 +32,12 @@ pub struct Settings {
 
     #[command(flatten)]
     pub file: FileOutput,
+
+    #[command(flatten)]
+    pub mips: Mips,
+
+    #[command(flatten)]
+    pub roughness: Roughness,
 
     #[command(flatten)]
     pub input: HeightInput,
@@ -50,6 +58,8 @@ impl Settings {
             slope: self.slope.or(&weaker.slope),
             normal: self.normal.or(&weaker.normal),
             file: self.file.or(&weaker.file),
+            mips: self.mips.or(&weaker.mips),
+            roughness: self.roughness.or(&weaker.roughness),
             input: self.input.or(weaker.input.clone()),
             tiles: self.tiles.or(&weaker.tiles),
             device: self.device.or(weaker.device.clone()),
@@ -62,13 +72,19 @@ impl Slope {
     ///
     /// # Errors
     /// [`texbake::Error::Parameter`] for options out of range or at odds.
-    pub fn bake(&self, normal: Option<NormalFormat>, parallax: Option<ParallaxFormat>) -> Result<BakeOptions> {
+    pub fn bake(
+        &self,
+        normal: Option<NormalFormat>,
+        parallax: Option<ParallaxFormat>,
+        roughness: Option<RoughnessOptions>,
+    ) -> Result<BakeOptions> {
         let options = BakeOptions {
             scale: self.scale()?,
             filter: self.filter.unwrap_or_default(),
             edges: self.edge.unwrap_or_default(),
             normal,
             parallax,
+            roughness,
             precision: self.precision.unwrap_or_default(),
         };
         // A map of one texel shows what is wrong for every map before any file is opened.

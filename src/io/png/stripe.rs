@@ -24,8 +24,9 @@ const CHOICES: [Choice; 3] = [Choice::Fixed(Filter::Paeth), Choice::Fixed(Filter
 /// Codes alone. Short blocks follow a steep map more closely.
 const LITERALS: [Coding; 2] = [Coding::Literals(LONG_BLOCK), Coding::Literals(SHORT_BLOCK)];
 
-/// Neither level of zlib is always the better one: a longer search finds matches that take more bits than literals.
-const MATCHES: [Coding; 2] = [Coding::Matches(6), Coding::Matches(9)];
+/// All matches that a long search finds, and a longer one.
+const MATCHES: Coding = Coding::Matches(8);
+const MOST_MATCHES: Coding = Coding::Matches(9);
 
 /// Bytes in the middle of a stripe, from which it is guessed whether matches pay.
 const SAMPLE_BYTES: usize = 16 << 10;
@@ -87,22 +88,24 @@ impl Stripe {
     /// Filters and deflates the rows.
     pub fn encode(&mut self, effort: Effort) {
         self.choice = None;
-        let (choices, codings) = match effort {
-            Effort::Fast => (&CHOICES[..1], &LITERALS[..1]),
-            Effort::Balanced | Effort::Small => (&CHOICES[..], &LITERALS[..]),
-        };
+        if effort == Effort::Fast {
+            return self.attempts(&CHOICES[..1], &LITERALS[..1]);
+        }
+        self.attempts(&CHOICES, &LITERALS);
+        let smallest = self.choice.unwrap_or(CHOICES[0]);
+        self.filter(smallest);
+        if self.matches_pay() {
+            self.attempt(smallest, MATCHES);
+        }
+        if effort == Effort::Small {
+            self.attempts(&CHOICES, &[MOST_MATCHES]);
+        }
+    }
+
+    fn attempts(&mut self, choices: &[Choice], codings: &[Coding]) {
         for choice in choices {
             self.filter(*choice);
             codings.iter().for_each(|coding| self.attempt(*choice, *coding));
-            if effort == Effort::Small {
-                MATCHES.iter().for_each(|coding| self.attempt(*choice, *coding));
-            }
-        }
-        if let (Effort::Balanced, Some(choice)) = (effort, self.choice) {
-            self.filter(choice);
-            if self.matches_pay() {
-                self.attempt(choice, MATCHES[0]);
-            }
         }
     }
 
@@ -126,16 +129,16 @@ impl Stripe {
         }
     }
 
-    /// Whether a part of the stripe is smaller with matches.
+    /// Whether a part of the stripe is much smaller with matches: they take a hundred times as long.
     fn matches_pay(&mut self) -> bool {
         let middle = self.filtered.len().saturating_sub(SAMPLE_BYTES) / 2;
         let sample = &self.filtered[middle..][..SAMPLE_BYTES.min(self.filtered.len())];
-        let [literals, matches] = [LITERALS[1], MATCHES[0]].map(|coding| {
+        let [literals, matches] = [LITERALS[1], MATCHES].map(|coding| {
             self.other.clear();
             deflate(sample, coding, &mut self.other);
             self.other.bytes().len()
         });
-        matches < literals
+        matches < literals - literals / 16
     }
 
     /// The stripe's piece of the stream, once it is encoded.

@@ -2,6 +2,7 @@
 
 use crate::exact::Scale;
 use crate::map::{Edges, NormalFormat, ParallaxFormat};
+use crate::mips::RoughnessOptions;
 use crate::names::named;
 use crate::ops::Precision;
 
@@ -54,6 +55,8 @@ pub struct BakeOptions {
     pub normal: Option<NormalFormat>,
     /// The parallax map's format, if one is wanted.
     pub parallax: Option<ParallaxFormat>,
+    /// The roughness of the mip levels beside them, if it is wanted.
+    pub roughness: Option<RoughnessOptions>,
     /// Exact bytes, or speed.
     pub precision: Precision,
 }
@@ -66,13 +69,13 @@ impl Default for BakeOptions {
 
 impl From<NormalOptions> for BakeOptions {
     fn from(NormalOptions { scale, filter, edges, format, precision }: NormalOptions) -> Self {
-        Self { scale, filter, edges, normal: Some(format), parallax: None, precision }
+        Self { scale, filter, edges, normal: Some(format), parallax: None, roughness: None, precision }
     }
 }
 
 impl From<ParallaxOptions> for BakeOptions {
     fn from(ParallaxOptions { scale, filter, edges, format, precision }: ParallaxOptions) -> Self {
-        Self { scale, filter, edges, normal: None, parallax: Some(format), precision }
+        Self { scale, filter, edges, normal: None, parallax: Some(format), roughness: None, precision }
     }
 }
 

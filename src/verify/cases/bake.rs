@@ -160,7 +160,8 @@ fn case(
         let per_height = scale.numerator() as f64
             / scale.denominator() as f64
             / (2.0 * height_type.greatest_code().map_or(65_535.0, f64::from));
-        let options = BakeOptions { scale: Scale::Texels(scale), filter, edges, normal, parallax, precision };
+        let options =
+            BakeOptions { scale: Scale::Texels(scale), filter, edges, normal, parallax, roughness: None, precision };
         let near = Boundary {
             per_height,
             codes: normal.map_or((Encoding::Unorm, Depth::Bits8), |it| (it.encoding, it.depth)),

@@ -91,7 +91,11 @@ impl Folder {
         let baker = Arc::new(baker);
         let job = |file| Job {
             input: self.folder.path().join(format!("{file}.raw")),
-            outputs: Maps { normal: Some(self.folder.path().join(out).join(format!("{file}.tif"))), parallax: None },
+            outputs: Maps {
+                normal: Some(self.folder.path().join(out).join(format!("{file}.tif"))),
+                parallax: None,
+                roughness: None,
+            },
             normals: None,
             neighbours: None,
             read: ReadOptions { raw, ..Default::default() },
