@@ -95,6 +95,7 @@ impl Scale {
     ///
     /// # Errors
     /// [`Error::Parameter`] for a physical size with too many digits.
+    #[cfg(feature = "cli")]
     pub(crate) fn over(self, from: Size, to: Size) -> Result<Self> {
         let Self::Physical { size: [width, height], depth } = self else { return Ok(self) };
         let side = |side: Rational, from: usize, to: usize| {

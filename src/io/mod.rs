@@ -13,12 +13,14 @@
 //! does not keep it; and folders that several machines write into at once over a network without common locks.
 
 mod channel;
+#[cfg(feature = "cli")]
 mod crop;
 mod damage;
 mod exr;
 mod format;
 mod gltf;
 mod groups;
+#[cfg(feature = "cli")]
 mod halo;
 mod input;
 mod limits;
@@ -39,9 +41,11 @@ mod tiff;
 mod write;
 
 pub use channel::Channel;
+#[cfg(feature = "cli")]
 pub(crate) use crop::Cropped;
 pub use format::{INPUT_EXTENSIONS, default_format, default_parallax_format};
 pub use gltf::{LeftOut, Model, ModelFile, ModelFiles, ModelReadOptions, ModelReport, Placement, Primitive};
+#[cfg(feature = "cli")]
 pub(crate) use halo::{Halo, HaloRows, Reach, TileRow};
 pub use parallax::ParallaxReadOptions;
 pub use raw::{RawKind, RawLayout};
