@@ -110,6 +110,9 @@ pub struct Outputs {
     pub normal: Option<String>,
     /// The parallax map.
     pub parallax: Option<String>,
+    /// The roughness map.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub roughness: Option<String>,
 }
 
 /// How the work on some files went.
@@ -360,7 +363,11 @@ impl FileReport {
         Self {
             input: job.input.clone(),
             normals: job.normals.as_ref().map(|normals| normals.path.display().to_string()),
-            outputs: Outputs { normal: text(&job.outputs.normal), parallax: text(&job.outputs.parallax) },
+            outputs: Outputs {
+                normal: text(&job.outputs.normal),
+                parallax: text(&job.outputs.parallax),
+                roughness: text(&job.outputs.roughness),
+            },
             options: Options::new(job, iterations),
             depth: baked.map(|baked| baked.height_type.to_string()),
             scale: scale.map(|s| UsedScale { x: ratio(s.x, s.q), y: ratio(s.y, s.q), exact: s.exact }),

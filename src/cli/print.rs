@@ -12,7 +12,7 @@ use texbake::batch::{
 };
 use texbake::measure::digits;
 use texbake::verify::{Agreement, Comparison, Errors};
-use texbake::{Baked, Baker, Device, Error, HeightType, NormalFormat, Ran, Scale, Size};
+use texbake::{Baked, Baker, Device, Error, HeightType, Maps, NormalFormat, Ran, Scale, Size};
 
 /// Longer folders get a table of what was not baked, and of the slowest.
 const TABLE_ROWS: usize = 40;
@@ -266,8 +266,10 @@ fn rows_of<'a>(files: impl Iterator<Item = (&'a Job, &'a Outcome)>, left_out: &[
             FileResult::Stopped => "stopped".to_owned(),
             FileResult::NotBegun => "not begun".to_owned(),
         };
-        let maps = [job.outputs.normal.as_ref().map(|_| "normal"), job.outputs.parallax.as_ref().map(|_| "parallax")];
-        let maps = maps.into_iter().flatten().collect::<Vec<_>>().join(",");
+        let Maps { normal, parallax, roughness } = &job.outputs;
+        let maps = [("normal", normal), ("parallax", parallax), ("roughness", roughness)];
+        let maps: Vec<_> = maps.iter().filter(|(_, path)| path.is_some()).map(|(map, _)| *map).collect();
+        let maps = maps.join(",");
         table.add_row([job.input.display().to_string(), size, depth, maps, time, result]);
     }
     for file in left_out {

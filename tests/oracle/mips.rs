@@ -198,8 +198,11 @@ fn float_sums(planes: &[Vec<f64>], sizes: &[Size]) -> Vec<Vec<Vec<f64>>> {
     levels
 }
 
+/// A unit normal and a mean height.
+type FloatTexel = ([f32; 3], f32);
+
 /// The unit normals and the mean heights, at least 0 and at most 1, of all levels of float heights.
-fn float_texels(map: &HeightMap, options: &NormalOptions) -> Vec<(Size, Vec<([f32; 3], f32)>)> {
+fn float_texels(map: &HeightMap, options: &NormalOptions) -> Vec<(Size, Vec<FloatTexel>)> {
     let Heights::F32(heights) = map.heights() else { panic!("heights are floats here") };
     let (weights, divisor) = stencil(options.filter);
     let [centre, outer] = [weights[1][2] as f32, weights[0][2] as f32];
@@ -235,7 +238,7 @@ fn float_texels(map: &HeightMap, options: &NormalOptions) -> Vec<(Size, Vec<([f3
 /// The codes of all levels of a normal map of float heights.
 pub fn float_levels(map: &HeightMap, options: &NormalOptions) -> Vec<Image> {
     let format = options.format;
-    let image = |(size, texels): (Size, Vec<([f32; 3], f32)>)| {
+    let image = |(size, texels): (Size, Vec<FloatTexel>)| {
         let components = texels.iter().flat_map(|(normal, _)| &normal[..format.channels.count()]);
         Image { size, format, bits: components.map(|v| stored(*v, format)).collect() }
     };
@@ -245,8 +248,8 @@ pub fn float_levels(map: &HeightMap, options: &NormalOptions) -> Vec<Image> {
 /// The codes of all levels of a parallax map of float heights.
 pub fn float_parallax_levels(map: &HeightMap, options: &ParallaxOptions) -> Vec<Image<ParallaxFormat>> {
     let ParallaxOptions { scale, filter, edges, format, .. } = *options;
-    let parallax = |(normal, height): &([f32; 3], f32)| least(2f32.powi(-100), normal[2] * (2.0 * height - 1.0));
-    let image = |(size, texels): (Size, Vec<([f32; 3], f32)>)| Image {
+    let parallax = |(normal, height): &FloatTexel| least(2f32.powi(-100), normal[2] * (2.0 * height - 1.0));
+    let image = |(size, texels): (Size, Vec<FloatTexel>)| Image {
         size,
         format,
         bits: texels.iter().map(|texel| stored(parallax(texel), format)).collect(),
