@@ -20,6 +20,7 @@
 //! - [`Baker`] is a backend, chosen once: [`Baker::auto`], [`Baker::cpu`], [`Baker::gpu`].
 //! - [`HeightMap`], [`NormalMap`] and [`ParallaxMap`] are maps with what their numbers mean attached; [`io`] reads and
 //!   writes them.
+//! - [`Baker::bake_levels`] makes all mip levels of both, and what roughness stands for the detail that they lose.
 //! - [`Baker::bake`] makes normal and parallax map in one pass; [`Baker::blend`] makes one normal map of two.
 //! - [`Baker::bake_rows`] and [`Baker::blend_rows`] work while rows are read and written, in memory that does not grow
 //!   with the map; [`stream`] has the traits of their ends.
@@ -36,9 +37,11 @@
 //! | --- | --- |
 //! | [`Baker::normal`], [`Baker::bake`], [`Baker::blend`] | the maps that go in and those that come out |
 //! | [`Baker::normal_rows`], folders | a few bands of rows of each file that is being baked |
-//! | TIFF and EXR heights | besides, the strip, block or row of tiles that is being read, however large |
+//! | TIFF and EXR heights | besides, the block or row of tiles that is being read, however large; strips above 1 MiB are unpacked row by row |
 //! | interlaced PNG, TGA, BMP, JPEG, WebP heights | besides, the whole map, decoded |
-//! | PNG heights that wrap, baked into EXR | besides, the whole map up to 64 MiB; larger ones are decoded twice |
+//! | mip levels | besides, a few rows of sums for each level |
+| folders with [`stream::Monitor::with_memory`] | no more than that, or a file that needs more by itself fails |
+| PNG heights that wrap, baked into EXR | besides, the whole map up to 64 MiB; larger ones are decoded twice |
 //! | a detail map that tiles, in a blend | besides, the whole detail map |
 //! | [`Baker::tangents`] | the mesh, the corners at each of its vertices, and what comes out |
 //!

@@ -9,7 +9,7 @@ use texbake::{Error, Result};
 /// Cores and memory of a run.
 #[derive(Args, Debug)]
 pub struct Resources {
-    /// Cores that the run takes [default: all]
+    /// Cores that the run takes; elsewhere than on Linux, threads that bake and compress [default: all]
     #[arg(long, value_name = "N", help_heading = HEADING)]
     pub threads: Option<NonZeroUsize>,
 
@@ -58,15 +58,18 @@ impl Resources {
     }
 }
 
-/// Lets the process, with the threads of its files, its libraries and drivers, run on `count` of its cores: others for
-/// each process, so that several of them share the machine.
+/// Lets the process, with the threads of its files, its libraries and drivers, run on `count` of its cores, chosen by
+/// chance: several processes with fewer cores than there are rarely choose the same.
 #[cfg(target_os = "linux")]
 fn keep_to_cores(count: usize) -> rustix::io::Result<()> {
     use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity};
+    use std::hash::{BuildHasher, RandomState};
     let allowed = sched_getaffinity(None)?;
-    let cores: Vec<usize> = (0..CpuSet::MAX_CPU).filter(|core| allowed.is_set(*core)).collect();
-    let first = std::process::id() as usize * count % cores.len().max(1);
+    let mut cores: Vec<usize> = (0..CpuSet::MAX_CPU).filter(|core| allowed.is_set(*core)).collect();
+    // Its keys are the chance.
+    let chance = RandomState::new();
+    cores.sort_by_cached_key(|core| chance.hash_one(core));
     let mut chosen = CpuSet::new();
-    cores.iter().cycle().skip(first).take(count.min(cores.len())).for_each(|core| chosen.set(*core));
+    cores.into_iter().take(count).for_each(|core| chosen.set(core));
     sched_setaffinity(None, &chosen)
 }
