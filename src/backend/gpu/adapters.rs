@@ -14,6 +14,32 @@ pub(super) fn primary() -> Vec<Adapter> {
     of(Backends::PRIMARY)
 }
 
+/// Whether this machine can have a real GPU. On Linux the driver of one has a node in /dev; where there is none, asking
+/// for adapters would load drivers of software alone, which takes fifty milliseconds and as many megabytes. Drivers that
+/// the user names to Vulkan's loader are asked in any case.
+pub(super) fn can_be_real() -> bool {
+    #[cfg(target_os = "linux")]
+    {
+        const NAMED_DRIVERS: [&str; 3] = ["VK_DRIVER_FILES", "VK_ADD_DRIVER_FILES", "VK_ICD_FILENAMES"];
+        // Mesa's and most others; NVIDIA's; Windows' below Linux; those of phones and boards.
+        const NODES: [(&str, &str); 6] = [
+            ("/dev/dri", "renderD"),
+            ("/dev", "nvidia"),
+            ("/dev", "dxg"),
+            ("/dev", "kgsl"),
+            ("/dev", "mali"),
+            ("/dev", "pvr"),
+        ];
+        let is_there = |(folder, prefix): &(&str, &str)| {
+            let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+            entries.into_iter().any(|entry| entry.file_name().as_encoded_bytes().starts_with(prefix.as_bytes()))
+        };
+        NAMED_DRIVERS.iter().any(|name| std::env::var_os(name).is_some()) || NODES.iter().any(is_there)
+    }
+    #[cfg(not(target_os = "linux"))]
+    true
+}
+
 fn of(backends: Backends) -> Vec<Adapter> {
     let descriptor = InstanceDescriptor { backends, ..InstanceDescriptor::new_without_display_handle() };
     let mut adapters = pollster::block_on(Instance::new(descriptor).enumerate_adapters(backends));

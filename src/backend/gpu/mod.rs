@@ -198,6 +198,9 @@ impl Gpu {
 
     /// Opens the first real GPU that passes its self-test; else says why there is none.
     pub fn open_real() -> Result<Self, String> {
+        if !adapters::can_be_real() {
+            return Err("no real GPU: no driver of one is loaded".into());
+        }
         let mut reasons = Vec::new();
         for adapter in adapters::primary() {
             let info = adapter.get_info();
