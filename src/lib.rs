@@ -41,7 +41,7 @@
 //! | interlaced PNG, TGA, BMP, JPEG, WebP heights | besides, the whole map, decoded |
 //! | mip levels | besides, a few rows of sums for each level |
 //! | folders with [`stream::Monitor::with_memory`] | no more than that, or a file that needs more by itself fails |
-| PNG heights that wrap, baked into EXR | besides, the whole map up to 64 MiB; larger ones are decoded twice |
+//! | PNG heights that wrap, baked into EXR | besides, the whole map up to 64 MiB; larger ones are decoded twice |
 //! | a detail map that tiles, in a blend | besides, the whole detail map |
 //! | [`Baker::tangents`] | the mesh, the corners at each of its vertices, and what comes out |
 //!

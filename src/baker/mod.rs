@@ -57,7 +57,8 @@ impl Ran {
 }
 
 impl Baker {
-    /// A real GPU if there is one that passes its self-test, else the CPU; [`Baker::reason`] tells why.
+    /// A real GPU if there is one that passes its self-test, else the CPU; [`Baker::reason`] tells why. On Linux no GPU is
+    /// looked for where none has a driver in `/dev`, unless `VK_DRIVER_FILES` names drivers.
     ///
     /// The CPU takes over a job from its first row when the GPU
     /// - is lost, or has not answered for a minute;
