@@ -2,8 +2,8 @@
 //! with all matches.
 //!
 //! A filtered map has hardly anything else that repeats: searching for matches takes most of the time of other
-//! encoders and wins nothing, but where it is nearly flat (`benches/png` has the figures). No crate does just this: `fdeflate` is as fast, but its
-//! codes are fixed, which costs 7 to 14 % of the size, and the Huffman-only strategy of zlib takes four times as long.
+//! encoders and wins nothing, but where it is nearly flat. No crate does just this (`benches/png` has the figures): the
+//! codes of `fdeflate` are fixed, which costs size, and the Huffman-only strategy of zlib takes several times as long.
 //! And the stripes of an image, which several threads deflate, must join: every call here ends on a byte's border with
 //! a block that is not the last, where `fdeflate` and libdeflate end the whole stream.
 
