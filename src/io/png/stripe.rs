@@ -46,11 +46,12 @@ impl Effort {
         (self.stripe_bytes() / (1 + row_bytes)).max(1)
     }
 
-    /// Buffers of a stripe: its rows, filtered, and two attempts; the only attempt takes the rows' place.
+    /// Buffers of a stripe: its rows, and filtered; then two attempts, what zlib writes, and what it remembers. The only
+    /// attempt of the fast level takes the rows' place.
     pub fn buffers(self) -> usize {
         match self {
             Self::Fast => 2,
-            Self::Balanced | Self::Small => 4,
+            Self::Balanced | Self::Small => 6,
         }
     }
 }

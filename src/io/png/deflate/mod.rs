@@ -20,13 +20,13 @@ use codes::{Code, codes};
 use header::Header;
 use runs::{Length, runs_of_zeros};
 
-/// Bytes that share codes, about: fewer follow the map more closely, more spend less on codes.
-pub(super) const LONG_BLOCK: usize = 128 << 10;
-pub(super) const SHORT_BLOCK: usize = 32 << 10;
-
 /// The most bytes of a stored block, and the bytes before them.
 pub(super) const STORED_MOST: usize = 0xffff;
 pub(super) const STORED_HEADER: usize = 5;
+
+/// Bytes that share codes, about: fewer follow the map more closely, more spend less on codes and their making.
+pub(super) const LONG_BLOCK: usize = STORED_MOST;
+pub(super) const SHORT_BLOCK: usize = 16 << 10;
 
 /// Literals, the end of a block, and the lengths of matches (RFC 1951, section 3.2.5).
 const SYMBOLS: usize = 286;
