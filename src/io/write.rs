@@ -116,7 +116,13 @@ pub fn create_roughness_with(
 /// # Errors
 /// As [`check_normals_with`], and [`crate::Error::Parameter`] without levels, for which there is no roughness to tell.
 pub fn check_roughness(path: &Path, format: RoughnessFormat, options: &WriteOptions) -> Result<()> {
-    check_codes(path, format.texel(), &WriteOptions { mips: true, ..*options })?;
+    let held = check_codes(path, format.texel(), &WriteOptions { mips: true, ..*options });
+    held.map_err(|error| match error {
+        Error::Parameter { parameter: "bits", value, range } => {
+            Error::Parameter { parameter: "roughness-bits", value, range }
+        }
+        other => other,
+    })?;
     if options.mips {
         return Ok(());
     }

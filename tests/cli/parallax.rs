@@ -208,7 +208,7 @@ fn mistakes_are_refused_with_the_way_out() {
         (
             1,
             &["h.png", "-o", "p.jpg"],
-            "p.jpg: the extension .jpg is unknown; texbake writes .png, .tif, .tiff and .exr",
+            "p.jpg: the extension .jpg is unknown; texbake writes .png, .tif, .tiff, .exr, .ktx2 and .dds",
         ),
         (
             1,

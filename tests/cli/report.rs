@@ -49,8 +49,9 @@ fn a_folder_is_reported_file_by_file() {
     let mut options = json!({
         "scale": "1", "filter": "central", "edge": "wrap,clamp", "maps": "normal", "encoding": "unorm", "bits": "8",
         "channels": "xyz", "convention": "gl", "parallax_encoding": null, "parallax_bits": null, "iterations": null,
-        "precision": "exact", "channel": null, "color_space": "linear", "raw": null, "shrink": 1,
-        "max_bytes": 4_294_967_296u64,
+        "precision": "exact", "compression": "fast", "mips": false, "roughness_method": null, "base_roughness": null,
+        "roughness_bits": null, "block_compression": null, "neighbours": null, "channel": null,
+        "color_space": "linear", "raw": null, "shrink": 1, "max_bytes": 4_294_967_296u64,
     });
     assert_eq!(
         files[0],
@@ -76,6 +77,43 @@ fn a_folder_is_reported_file_by_file() {
     // 0.1 over 2 / 4 and over 1 / 4.
     assert_eq!(files[1]["scale"], json!({ "x": "0.2", "y": "0.4", "exact": true }));
     assert_eq!(files[1]["outputs"]["normal"], "out/b_normal_2k.png");
+}
+
+#[test]
+fn what_textures_and_tiles_were_asked_for_is_reported() {
+    let folder = Folder::new();
+    folder.grey8("tex/a_height.png", 4, 4, bumps8);
+    let options = |arguments: &[&str]| {
+        let bake = ["bake", "tex", "--out", "out", "--backend", "reference", "-q", "--report", "r.json"];
+        folder.run(&[&bake, arguments].concat()).ends(0);
+        take(&mut folder.json("r.json")["files"][0], "options")
+    };
+    let found = options(&[
+        "--format=dds",
+        "--maps=normal,roughness",
+        "--mips",
+        "--block-compression=bc5",
+        "--compression=small",
+        "--roughness-method=toksvig",
+        "--base-roughness=1/4",
+    ]);
+    for (name, expected) in [
+        ("maps", json!("normal,roughness")),
+        ("encoding", json!("unorm")),
+        ("compression", json!("small")),
+        ("mips", json!(true)),
+        ("roughness_method", json!("toksvig")),
+        ("base_roughness", json!("0.25")),
+        ("roughness_bits", json!("8")),
+        ("block_compression", json!("bc5")),
+    ] {
+        assert_eq!(found[name], expected, "{name}");
+    }
+    folder.grey8("tex/t_0_0_height.png", 4, 4, bumps8);
+    folder.grey8("tex/t_1_0_height.png", 4, 4, bumps8);
+    std::fs::remove_file(folder.path("tex/a_height.png")).unwrap();
+    let found = options(&["--neighbours", "t_{x}_{y}_height.png", "--edge", "clamp"]);
+    assert_eq!(found["neighbours"], "edge, edge, edge; edge, here, tex/t_1_0_height.png; edge, edge, edge");
 }
 
 #[test]

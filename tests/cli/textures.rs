@@ -68,5 +68,8 @@ fn what_does_not_fit_is_told_before_anything_is_baked() {
     }
     let arguments = ["parallax", "h.png", "-o", "p.dds", "--bits", "16", "--block-compression", "bc4"];
     folder.run(&arguments).ends(2).says("--bits is 16", &["it must be 8 in blocks"]);
+    let roughness = ["normal", "h.png", "-o", "n.dds", "--mips", "--roughness", "r.dds", "--roughness-bits", "16"];
+    let run = folder.run(&[&roughness[..], &["--block-compression", "bc5"]].concat()).ends(2);
+    run.says("--roughness-bits is 16, for r.dds", &["it must be 8 in blocks"]);
     assert_eq!(folder.files("."), ["h.png"]);
 }

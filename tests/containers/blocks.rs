@@ -11,17 +11,33 @@ use texbake::Encoding::Snorm;
 use texbake::io::{BlockCompression, WriteOptions, create_normals_with};
 use texbake::{CodesRef, NormalFormat, Size};
 
-/// The value of texel `at` of a BC4 block, in codes.
-fn decoded(block: &[u8], at: usize, signed: bool) -> f64 {
-    let end = |byte: u8| if signed { f64::from(byte as i8) } else { f64::from(byte) };
-    let (first, second) = (end(block[0]), end(block[1]));
-    let bits = u64::from_le_bytes(block.try_into().unwrap()) >> 16;
-    let index = (bits >> (3 * at) & 7) as f64;
-    match (index as u8, first > second) {
-        (0, _) => first,
-        (1, _) => second,
-        (_, true) => ((8.0 - index) * first + (index - 1.0) * second) / 7.0,
-        _ => panic!("a block of six values, which the encoder does not make but of one code"),
+/// A block of BC4, or one of the two components of one of BC5.
+pub struct Component<'a> {
+    pub block: &'a [u8],
+    pub signed: bool,
+}
+
+impl Component<'_> {
+    /// The two ends of its range, in codes.
+    pub fn ends(&self) -> [f64; 2] {
+        [0, 1].map(|end| if self.signed { f64::from(self.block[end] as i8) } else { f64::from(self.block[end]) })
+    }
+
+    /// Which of its values texel `at` has: 0 and 1 are the ends.
+    pub fn index(&self, at: usize) -> u8 {
+        let bits = u64::from_le_bytes(self.block.try_into().unwrap()) >> 16;
+        (bits >> (3 * at) & 7) as u8
+    }
+
+    /// The value of texel `at`, in codes.
+    pub fn value(&self, at: usize) -> f64 {
+        let ([first, second], index) = (self.ends(), f64::from(self.index(at)));
+        match (self.index(at), first > second) {
+            (0, _) => first,
+            (1, _) => second,
+            (_, true) => ((8.0 - index) * first + (index - 1.0) * second) / 7.0,
+            _ => panic!("a block of six values, which the encoder does not make but of one code"),
+        }
     }
 }
 
@@ -46,8 +62,8 @@ fn a_component_is_off_by_a_fourteenth_of_its_blocks_range_at_most() {
                         let code = codes[(y * level.width + x) * kind.channels + channel];
                         if kind.encoding == Snorm { f64::from(code as i8) } else { f64::from(code) }
                     };
-                    let values: Vec<(f64, f64)> =
-                        texels.map(|(at, x, y)| (code(x, y), decoded(block, at, kind.encoding == Snorm))).collect();
+                    let component = Component { block, signed: kind.encoding == Snorm };
+                    let values: Vec<(f64, f64)> = texels.map(|(at, x, y)| (code(x, y), component.value(at))).collect();
                     let least = values.iter().map(|value| value.0).fold(f64::MAX, f64::min);
                     let greatest = values.iter().map(|value| value.0).fold(f64::MIN, f64::max);
                     // 1e-9: the roundings of f64 here.

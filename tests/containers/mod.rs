@@ -3,6 +3,8 @@
 mod blocks;
 mod bytes;
 #[cfg(feature = "gpu")]
+mod device;
+#[cfg(feature = "gpu")]
 mod gpu;
 mod made;
 mod parsed;

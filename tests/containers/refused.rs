@@ -42,7 +42,7 @@ fn each_refusal_names_what_is_wrong_and_what_would_do() {
             Some(Bc5),
             "encoding is float with 32f bits, for n.dds: it must be unorm or snorm with 8 bits in blocks",
         ),
-        ("n.dds", normal(Unorm, Bits16, Xyz), Some(Bc7), "bits is 16: it must be 8 in blocks"),
+        ("n.dds", normal(Unorm, Bits16, Xyz), Some(Bc7), "bits is 16, for n.dds: it must be 8 in blocks"),
         (
             "n.ktx2",
             normal(Snorm, Bits8, Xyz),

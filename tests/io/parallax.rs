@@ -163,7 +163,7 @@ fn each_extension_has_its_usual_format() {
     assert_eq!(usual("p.TIF").unwrap(), format(Encoding::Snorm, Depth::Bits8));
     assert_eq!(usual("p.tiff").unwrap(), format(Encoding::Snorm, Depth::Bits8));
     assert_eq!(usual("p.exr").unwrap(), format(Encoding::Float, Depth::Float32));
-    assert!(usual("p.jpg").unwrap_err().to_string().contains("texbake writes .png, .tif, .tiff and .exr"));
+    assert!(usual("p.jpg").unwrap_err().to_string().contains("texbake writes .png, .tif, .tiff, .exr, .ktx2 and .dds"));
     let folder = Folder::new();
     for (name, codes) in [("p.png", Codes::U8(vec![128, 1])), ("p.tif", Codes::U8(vec![0, 0x81]))] {
         let map = ParallaxMap::new(Size::new(1, 2).unwrap(), usual(name).unwrap(), codes).unwrap();

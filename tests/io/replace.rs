@@ -78,8 +78,9 @@ fn targets_that_cannot_be_written_are_refused_at_once() {
     permissions.set_readonly(true);
     std::fs::set_permissions(&locked, permissions).unwrap();
     assert!(refuse("l.png").contains("it is read-only; make it writable, or write elsewhere"));
-    assert!(refuse("n").contains("it has no extension, which picks the format; texbake writes .png, .tif"));
-    assert!(refuse("n.webp").contains("the extension .webp is unknown; texbake writes .png, .tif, .tiff and .exr"));
+    let known = "texbake writes .png, .tif, .tiff, .exr, .ktx2 and .dds";
+    assert!(refuse("n").contains(&format!("it has no extension, which picks the format; {known}")));
+    assert!(refuse("n.webp").contains(&format!("the extension .webp is unknown; {known}")));
 }
 
 #[test]

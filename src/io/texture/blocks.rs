@@ -99,6 +99,11 @@ impl Blocks {
 }
 
 impl BlockRow {
+    /// Bytes of the texels of a row of blocks, of a map of this width.
+    pub fn texel_bytes(width: usize) -> usize {
+        4 * width.next_multiple_of(Blocks::SIDE) * Blocks::SIDE
+    }
+
     /// Its place among the rows of blocks.
     pub fn index(&self) -> usize {
         self.index
@@ -113,7 +118,7 @@ impl BlockRow {
     pub fn of(row: usize, width: usize, height: usize) -> Self {
         let index = row / Blocks::SIDE;
         let rows = Blocks::SIDE.min(height - index * Blocks::SIDE);
-        let texels = [0, 0, 0, u8::MAX].repeat(width.next_multiple_of(Blocks::SIDE) * Blocks::SIDE);
+        let texels = [0, 0, 0, u8::MAX].repeat(Self::texel_bytes(width) / 4);
         Self { index, texels, width, rows, rows_left: rows }
     }
 }

@@ -104,7 +104,8 @@ impl TextureFormat {
             return Err(cannot_hold(path, format, "unorm or snorm with 8 bits in blocks"));
         }
         if format.depth != Depth::Bits8 {
-            return Err(Error::parameter("bits", format.depth, "8 in blocks"));
+            let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+            return Err(Error::parameter("bits", format_args!("{}, for {name}", format.depth), "8 in blocks"));
         }
         let signed = format.encoding == Encoding::Snorm;
         let (blocks, vulkan, dxgi, bytes) = match (format.channels, compression, signed) {

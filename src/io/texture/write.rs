@@ -51,6 +51,7 @@ struct TextureEncoder {
     smaller: Option<SmallerLevels>,
     /// Rows of the smaller levels that have not come.
     rows_left: Arc<AtomicUsize>,
+    held_bytes: usize,
 }
 
 struct SmallerLevels {
@@ -88,7 +89,18 @@ pub(in crate::io) fn create(
     let smaller = levels[1..].iter().map(|level| (expected(level), rows(level))).collect();
     let rows_left = Arc::new(AtomicUsize::new(levels[1..].iter().map(|level| level.height).sum()));
     let smaller = (levels.len() > 1).then(|| SmallerLevels { levels: smaller, rows_left: rows_left.clone() });
-    Ok(FileSink::boxed(TextureEncoder { largest, smaller, rows_left }, replacement, size, codes))
+    let held_bytes = held_bytes(&format, &levels);
+    Ok(FileSink::boxed(TextureEncoder { largest, smaller, rows_left, held_bytes }, replacement, size, codes))
+}
+
+/// The most bytes that wait for others, or are being made: texels of the largest level and of one of the others at the
+/// same time; of blocks, the topmost row of each level and the one that comes, and what two of them become.
+fn held_bytes(format: &TextureFormat, levels: &[Level]) -> usize {
+    let row_bytes = levels[0].row_bytes;
+    match format.blocks {
+        None => 2 * PIECE.max(row_bytes),
+        Some(_) => 2 * (row_bytes + levels.iter().map(|level| BlockRow::texel_bytes(level.width)).sum::<usize>()),
+    }
 }
 
 impl TextureFile {
@@ -144,11 +156,8 @@ impl LevelRows {
 }
 
 impl RowEncoder for TextureEncoder {
-    /// Texels that are being converted; of blocks, the topmost row and the one that comes, of all levels together twice
-    /// as wide as the largest.
     fn held_bytes(&self, _: usize) -> u64 {
-        const ROWS_OF_A_BLOCK: usize = 4;
-        (2 * PIECE + 2 * 2 * ROWS_OF_A_BLOCK * self.largest.level.row_bytes) as u64
+        self.held_bytes as u64
     }
 
     fn takes_first_row_last(&self) -> bool {
