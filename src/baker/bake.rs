@@ -1,6 +1,6 @@
 //! Height maps into normal and parallax maps.
 
-use super::memory::job_bytes;
+use super::memory::{beside_bytes, job_bytes};
 use super::write::{as_dyn, whole_sink, write_watched};
 use super::{Baker, Ran};
 use crate::backend::RowBytes;
@@ -184,7 +184,8 @@ impl Baker {
             }
             let held_map = if is_held(&plan, source.as_ref(), order) { plan.map_bytes() } else { 0 };
             let passing = job_bytes(backend, RowBytes::of_bake(&plan), plan.size.height(), &sinks);
-            let _memory = turn.take(source.held_bytes() + held_map as u64 + passing, monitor)?;
+            let beside_maps = beside_bytes(backend, &plan, options, &levels);
+            let _memory = turn.take(source.held_bytes() + held_map as u64 + passing + beside_maps, monitor)?;
             write_watched(sinks, &formats(&plan, options), plan.size, order, monitor, |sinks| {
                 let (sinks, beside) = beside(options, sinks, levels);
                 let bake = |bands: &mut dyn HeightBands| bake_with_levels(backend, &plan, order, bands, sinks, beside);

@@ -84,7 +84,7 @@ impl Wide {
     pub(super) fn shifted(self, by: u32) -> Self {
         match by {
             0 => self,
-            1..128 => Self { high: self.high << by | self.low >> (128 - by), low: self.low << by },
+            1..128 => Self { high: (self.high << by) | (self.low >> (128 - by)), low: self.low << by },
             _ => Self { high: self.low << (by - 128), low: 0 },
         }
     }

@@ -72,10 +72,12 @@ struct End {
 
 impl fmt::Display for Reach {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (&self.tile, self.overlap) {
-            (None, _) => f.write_str("edge"),
-            (Some(tile), 0) => write!(f, "{}", tile.display()),
-            (Some(tile), overlap) => write!(f, "{} overlapping by {overlap}", tile.display()),
+        let Some(tile) = &self.tile else { return f.write_str("edge") };
+        // All tiles are in one folder, and are the same wherever it is.
+        let name = tile.file_name().unwrap_or(tile.as_os_str()).display();
+        match self.overlap {
+            0 => write!(f, "{name}"),
+            overlap => write!(f, "{name} overlapping by {overlap}"),
         }
     }
 }

@@ -50,6 +50,8 @@ pub(crate) use halo::{Halo, HaloRows, Reach, TileRow};
 pub use parallax::ParallaxReadOptions;
 pub use raw::{RawKind, RawLayout};
 pub use texture::BlockCompression;
+#[cfg(feature = "cli")]
+pub(crate) use write::is_compressed;
 pub use write::{
     Compression, WriteOptions, check_normal_format, check_normals_with, check_parallax_format, check_parallax_with,
     check_roughness, create_normals, create_normals_with, create_parallax, create_parallax_with, create_roughness_with,

@@ -10,6 +10,12 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::path::Path;
 
+/// 16-bit coefficients of up to three components.
+const COEFFICIENT_BYTES: usize = 3 * 2;
+
+/// A texel as RGBA, or as brightness and colour, before it is a sample.
+const WEBP_TEXEL_BYTES: usize = 4;
+
 /// Opens a file, which is decoded when its first row is asked for.
 pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<Opened> {
     let file = input::open(path)?;
@@ -18,14 +24,18 @@ pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<O
     let held = if is_held { file.metadata().map_err(Error::io(path))?.len() } else { 0 };
     limits::check_stored(path, held, max_bytes)?;
     let mut file = BufReader::new(file);
-    if format == ImageFormat::Jpeg && !jpeg_has_end(&mut file).map_err(Error::io(path))? {
-        // The decoder would fill what is missing with grey.
-        return Err(truncated(path));
-    }
-    let lossy = match format {
-        ImageFormat::Jpeg => true,
-        ImageFormat::WebP => webp_is_lossy(&mut file).map_err(Error::io(path))?,
-        _ => false,
+    // And bytes of each texel beside its samples.
+    let (lossy, texel_bytes) = match format {
+        ImageFormat::Jpeg => {
+            let jpeg = jpeg_markers(&mut file).map_err(Error::io(path))?;
+            if !jpeg.has_end {
+                // The decoder would fill what is missing with grey.
+                return Err(truncated(path));
+            }
+            (true, if jpeg.is_progressive { COEFFICIENT_BYTES } else { 0 })
+        }
+        ImageFormat::WebP => (webp_is_lossy(&mut file).map_err(Error::io(path))?, WEBP_TEXEL_BYTES),
+        _ => (false, 0),
     };
     file.rewind().map_err(Error::io(path))?;
     let mut decoder = decoder(path, file, format, max_bytes)?;
@@ -47,7 +57,8 @@ pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<O
     let profile = decoder.icc_profile().unwrap_or_default().unwrap_or_default();
     let whole = {
         let path = path.to_owned();
-        DecodedWhole::new(layout, held, move || decode(&path, format, layout, max_bytes))
+        let beside = held + (texel_bytes * size.texels()) as u64;
+        DecodedWhole::new(layout, beside, move || decode(&path, format, layout, max_bytes))
     };
     Ok(Opened { says_srgb: srgb::is_named_by(&profile), lossy, ..Opened::new(whole) })
 }
@@ -76,22 +87,32 @@ fn decode(path: &Path, format: ImageFormat, layout: Layout, max_bytes: u64) -> R
     Ok(Samples::U8(samples))
 }
 
-/// Whether an end-of-image marker follows the last start-of-scan marker; coded data holds neither (ITU T.81, B.1.1.5).
-fn jpeg_has_end(file: &mut impl BufRead) -> io::Result<bool> {
-    let (mut previous, mut has_scan, mut has_end) = (0, false, false);
+/// What the markers of a JPEG say; coded data holds none of them (ITU T.81, B.1.1.5).
+#[derive(Default)]
+struct JpegMarkers {
+    /// Whether an end-of-image marker follows the last start-of-scan marker.
+    has_end: bool,
+    /// Whether all coefficients are held until the last scan; said by a picture in the metadata too.
+    is_progressive: bool,
+}
+
+fn jpeg_markers(file: &mut impl BufRead) -> io::Result<JpegMarkers> {
+    let mut markers = JpegMarkers::default();
+    let (mut previous, mut has_scan) = (0, false);
     loop {
         let bytes = file.fill_buf()?;
         for byte in bytes {
             match [previous, *byte] {
-                [0xff, 0xda] => (has_scan, has_end) = (true, false),
-                [0xff, 0xd9] => has_end = has_scan,
+                [0xff, 0xda] => (has_scan, markers.has_end) = (true, false),
+                [0xff, 0xd9] => markers.has_end = has_scan,
+                [0xff, 0xc2] => markers.is_progressive = true,
                 _ => (),
             }
             previous = *byte;
         }
         let count = bytes.len();
         if count == 0 {
-            return Ok(has_end);
+            return Ok(markers);
         }
         file.consume(count);
     }

@@ -164,6 +164,12 @@ pub fn check_parallax_with(path: &Path, format: ParallaxFormat, options: &WriteO
     check_codes(path, format.texel(), options).map(drop)
 }
 
+/// Whether [`WriteOptions::compression`] decides over the bytes of a file called `path`.
+#[cfg(feature = "cli")]
+pub(crate) fn is_compressed(path: &Path) -> bool {
+    matches!(OutputFormat::of(path), Ok(OutputFormat::Png))
+}
+
 /// The format of the file `path`, which can hold `format`.
 fn check_codes(path: &Path, format: TexelFormat, options: &WriteOptions) -> Result<OutputFormat> {
     format.check()?;

@@ -74,6 +74,25 @@ pub(crate) fn bake_with_levels(
     bands.finish()
 }
 
+/// Bytes that a bake with such levels, the last those of the roughness map if there is one, holds at most on `threads`
+/// threads, besides its bands and what the sinks hold.
+pub(crate) fn held_bytes(
+    plan: &BakePlan,
+    levels: &[LevelsOut<'_>],
+    roughness: Option<&RoughnessOptions>,
+    threads: usize,
+) -> u64 {
+    let rows = strip_rows(plan.size.width()).min(plan.size.height());
+    let of_maps = levels[..plan.outputs().count()].iter().any(Option::is_some);
+    let maps = if of_maps { MapLevels::held_bytes(plan, rows, threads) } else { 0 };
+    maps + roughness.map_or(0, |options| RoughnessLevels::held_bytes(plan, options.format, rows, threads))
+}
+
+/// Whole rows of about [`STRIP_TEXELS`] texels.
+fn strip_rows(width: usize) -> usize {
+    (STRIP_TEXELS / width).max(1)
+}
+
 struct MipBands<'a> {
     bands: &'a mut dyn HeightBands,
     plan: &'a BakePlan,
@@ -93,7 +112,7 @@ impl HeightBands for MipBands<'_> {
         let Self { bands, plan, order, travelled, maps, roughness, base, threads } = self;
         let Some(band) = bands.next()? else { return Ok(None) };
         base.as_mut().map_or(Ok(()), |base| base.fill(band.rows()))?;
-        let strip_rows = (STRIP_TEXELS / plan.size.width()).max(1);
+        let strip_rows = strip_rows(plan.size.width());
         on(*threads, || {
             for first in (0..band.rows()).step_by(strip_rows) {
                 let strip = band.part(first, strip_rows.min(band.rows() - first));
@@ -136,10 +155,10 @@ impl Flat<'_> {
     }
 }
 
-/// Runs `job` on `threads`, or those of the process.
+/// Runs `job` on `threads`, or those of the process: on one of them, so that its many small parts need no waking.
 fn on<T: Send>(threads: Option<&ThreadPool>, job: impl FnOnce() -> T + Send) -> T {
     match threads {
         Some(threads) => threads.install(job),
-        None => job(),
+        None => rayon::scope(|_| job()),
     }
 }

@@ -32,6 +32,17 @@ impl<'a> MapLevels<'a> {
         Self { plan, sums, sinks }
     }
 
+    /// Bytes that are held at most while strips of `rows` rows are added on `threads` threads.
+    pub fn held_bytes(plan: &BakePlan, rows: usize, threads: usize) -> u64 {
+        let (planes, texel_bytes) = (planes(plan), plan.texel_bytes());
+        match plan.height_type {
+            HeightType::U8 | HeightType::U16 => {
+                Pyramid::<i32>::held_bytes(plan.size, planes, texel_bytes, rows, threads)
+            }
+            HeightType::F32 => Pyramid::<f32>::held_bytes(plan.size, planes, texel_bytes, rows, threads),
+        }
+    }
+
     /// Adds a strip whose first row is row `row` of the map, and writes what it completes.
     pub fn add(&mut self, row: usize, strip: &HeightBand<'_>) -> Result<()> {
         let Self { plan, sums, sinks } = self;

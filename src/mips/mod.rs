@@ -20,5 +20,5 @@ mod roughness_levels;
 mod rows;
 mod sample;
 
-pub(crate) use chain::{Beside, LevelsOut, RoughnessOut, bake_with_levels};
+pub(crate) use chain::{Beside, LevelsOut, RoughnessOut, bake_with_levels, held_bytes};
 pub use roughness::{RoughnessMethod, RoughnessOptions};

@@ -6,6 +6,9 @@ use crate::map::Size;
 use rayon::prelude::*;
 use std::ops::Range;
 
+/// Columns whose sums one thread makes at a time: they stay in the first cache.
+const COLUMNS: usize = 1 << 10;
+
 /// Sums over the texels of each level, of several planes of samples.
 ///
 /// The order of sums, which matters to floats: in each column of the level that a level is made of (see [`levels`]) from
@@ -50,6 +53,25 @@ impl<T: Sample> Pyramid<T> {
     pub fn new(size: Size, planes: usize) -> Self {
         let level = |level| LevelSums { level, first: Vec::new(), open: Vec::new() };
         Self { size, planes, levels: levels(size).into_iter().map(level).collect(), first_row: Vec::new() }
+    }
+
+    /// Bytes that are held at most while `rows` rows are added at once on `threads` threads: samples, sums, and the
+    /// codes, `texel_bytes` to a texel, that the complete rows of one level become.
+    pub fn held_bytes(size: Size, planes: usize, texel_bytes: usize, rows: usize, threads: usize) -> u64 {
+        let levels = levels(size);
+        let row_bytes = |width: usize, each: usize| planes * width * each;
+        let complete_texels = |level: &Level| {
+            let complete = (rows * level.size.height()).div_ceil(size.height()) + 1;
+            complete.min(level.size.height()) * level.size.width()
+        };
+        let sums_of_level = |level: &Level| {
+            let source_width = level.source.checked_sub(1).map_or(size.width(), |source| levels[source].size.width());
+            row_bytes(2 * source_width + complete_texels(level), size_of::<T::Sum>())
+        };
+        let samples = (rows + 1) * row_bytes(size.width(), size_of::<T>());
+        let columns = threads * row_bytes(size.width(), size_of::<T::Sum>());
+        let codes = levels.iter().map(complete_texels).max().unwrap_or(0) * texel_bytes;
+        (samples + columns + codes + levels.iter().map(sums_of_level).sum::<usize>()) as u64
     }
 
     /// Adds rows of level 0 from row `first` on; they come from the top, but row 0 at any time. What comes back are the
@@ -99,13 +121,17 @@ impl<S: Sum> LevelSums<S> {
         let complete_end = touched.clone().rev().find(|row| is_complete(*row)).map_or(touched.start, |row| row + 1);
         let complete = touched.start.max(usize::from(rows.start > 0)).min(complete_end)..complete_end;
 
+        // Threads share the rows that become complete or, where those are few, the columns of each.
+        let block = if complete.len() < rayon::current_num_threads() { COLUMNS } else { row_samples };
         let columns_of = |row: usize, begun: Vec<S>| {
             let mut columns = if begun.is_empty() { vec![S::default(); row_samples] } else { begun };
             let covered = y.covered(row);
-            for source in covered.start.max(rows.start)..covered.end.min(rows.end) {
-                let samples = &samples[(source - rows.start) * row_samples..][..row_samples];
-                add_weighted(samples, y.weight(row, source), &mut columns);
-            }
+            columns.par_chunks_mut(block).enumerate().for_each(|(index, columns)| {
+                for source in covered.start.max(rows.start)..covered.end.min(rows.end) {
+                    let samples = &samples[(source - rows.start) * row_samples + index * block..][..columns.len()];
+                    add_weighted(samples, y.weight(row, source), columns);
+                }
+            });
             columns
         };
         // What was begun belongs to the first row that is touched; row 0 waits for row 0 of the source.

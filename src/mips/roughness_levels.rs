@@ -28,6 +28,13 @@ impl<'a> RoughnessLevels<'a> {
         Self { plan, roughness, format, sums: Pyramid::new(plan.size, PLANES), sink }
     }
 
+    /// Bytes that are held at most while strips of `rows` rows are added on `threads` threads, of which each has the
+    /// stencil sums of a row.
+    pub fn held_bytes(plan: &BakePlan, format: RoughnessFormat, rows: usize, threads: usize) -> u64 {
+        let stencil_sums = threads * plan.size.width() * size_of::<[f32; 2]>();
+        Pyramid::<f64>::held_bytes(plan.size, PLANES, format.texel().bytes(), rows, threads) + stencil_sums as u64
+    }
+
     /// Adds a strip whose first row is row `row` of the map, and writes what it completes.
     pub fn add(&mut self, row: usize, strip: &HeightBand<'_>) -> Result<()> {
         let samples = match strip {

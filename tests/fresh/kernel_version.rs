@@ -4,16 +4,17 @@ use std::path::Path;
 use std::sync::Arc;
 use tempfile::TempDir;
 use texbake::batch::{Job, KERNEL_VERSION, run};
-use texbake::io::{RawLayout, ReadOptions, WriteOptions};
+use texbake::io::{BlockCompression, Compression, RawLayout, ReadOptions, WriteOptions};
 use texbake::stream::Monitor;
 use texbake::{
-    BakeOptions, Baker, Channels, Convention, Depth, Edges, Encoding, Filter, Maps, NormalFormat, ParallaxFormat, Scale,
+    BakeOptions, Baker, Channels, Convention, Depth, Edges, Encoding, Filter, Maps, NormalFormat, ParallaxFormat,
+    RoughnessFormat, RoughnessMethod, RoughnessOptions, Scale,
 };
 
 /// The version that the table below is of.
 const VERSION: u32 = 1;
 
-/// The BLAKE3 hash of each output, as a whole file.
+/// The BLAKE3 hash of each output.
 const TABLE: &[(&str, &str)] = &[
     ("u8_0_normal.png", "e672d5ecbc92f0a84a542eb9a85cf1b0"),
     ("u8_0_parallax.png", "53cb97361954e3662ffd7563289d4d27"),
@@ -81,8 +82,15 @@ fn input(folder: &Path, kind: &str) -> (std::path::PathBuf, RawLayout) {
     (path, format!("{WIDTH}x{HEIGHT}:{kind}").parse().unwrap())
 }
 
-/// Slopes and the formats of the maps, with the extension of the files: each at least once.
-fn cases() -> Vec<(&'static str, BakeOptions)> {
+/// A bake, and the files of its maps.
+struct Case {
+    extension: &'static str,
+    options: BakeOptions,
+    write: WriteOptions,
+}
+
+/// Slopes and the formats of the maps and files: each at least once.
+fn cases() -> Vec<Case> {
     let normal = |encoding, depth, channels, convention| NormalFormat { encoding, depth, channels, convention };
     let parallax = |encoding, depth| ParallaxFormat { encoding, depth };
     let options = |scale: &str, filter: Filter, edges: &str, normal, parallax| BakeOptions {
@@ -97,15 +105,55 @@ fn cases() -> Vec<(&'static str, BakeOptions)> {
     use Convention::{Dx, Gl};
     use Depth::{Bits8, Bits16, Float16, Float32};
     use Encoding::{Biased, Float, Snorm, Unorm};
+    let plain = |extension, options| Case { extension, options, write: WriteOptions::default() };
+    let packed = |compression| Case {
+        write: WriteOptions { compression, ..WriteOptions::default() },
+        ..plain("png", options("24", Filter::Central, "wrap", normal(Unorm, Bits8, Xyz, Gl), parallax(Biased, Bits8)))
+    };
+    let rough = |method, depth| {
+        Some(RoughnessOptions { method, base: "0.25".parse().unwrap(), format: RoughnessFormat { depth } })
+    };
+    let mips = |extension, blocks, options, roughness| Case {
+        extension,
+        options: BakeOptions { roughness, ..options },
+        write: WriteOptions { mips: true, blocks, ..WriteOptions::default() },
+    };
+    let bytes = |filter, edges| options("24", filter, edges, normal(Unorm, Bits8, Xyz, Gl), parallax(Snorm, Bits8));
+    let words = options("7/3", Filter::Scharr, "mirror", normal(Snorm, Bits16, Xy, Dx), parallax(Unorm, Bits16));
+    let floats = options("3", Filter::Central, "wrap", normal(Float, Float16, Xyz, Gl), parallax(Float, Float32));
     vec![
-        ("png", options("24", Filter::Central, "wrap", normal(Unorm, Bits8, Xyz, Gl), parallax(Biased, Bits8))),
-        ("png", options("7/3", Filter::Sobel, "clamp", normal(Biased, Bits16, Xy, Dx), parallax(Unorm, Bits16))),
-        ("tif", options("-0.35", Filter::Scharr, "mirror", normal(Snorm, Bits8, Xyz, Gl), parallax(Snorm, Bits8))),
-        ("tif", options("100", Filter::Prewitt, "wrap,clamp", normal(Unorm, Bits16, Xy, Gl), parallax(Snorm, Bits16))),
-        ("tif", options("3", Filter::Central, "wrap", normal(Float, Float32, Xyz, Dx), parallax(Float, Float32))),
-        ("exr", options("24", Filter::Sobel, "wrap", normal(Float, Float32, Xyz, Gl), parallax(Float, Float32))),
-        ("exr", options("24", Filter::Central, "clamp", normal(Float, Float16, Xy, Gl), parallax(Float, Float16))),
+        plain("png", options("24", Filter::Central, "wrap", normal(Unorm, Bits8, Xyz, Gl), parallax(Biased, Bits8))),
+        plain("png", options("7/3", Filter::Sobel, "clamp", normal(Biased, Bits16, Xy, Dx), parallax(Unorm, Bits16))),
+        plain("tif", options("-0.35", Filter::Scharr, "mirror", normal(Snorm, Bits8, Xyz, Gl), parallax(Snorm, Bits8))),
+        plain(
+            "tif",
+            options("100", Filter::Prewitt, "wrap,clamp", normal(Unorm, Bits16, Xy, Gl), parallax(Snorm, Bits16)),
+        ),
+        plain("tif", options("3", Filter::Central, "wrap", normal(Float, Float32, Xyz, Dx), parallax(Float, Float32))),
+        plain("exr", options("24", Filter::Sobel, "wrap", normal(Float, Float32, Xyz, Gl), parallax(Float, Float32))),
+        plain("exr", options("24", Filter::Central, "clamp", normal(Float, Float16, Xy, Gl), parallax(Float, Float16))),
+        packed(Compression::Balanced),
+        packed(Compression::Small),
+        mips("ktx2", None, bytes(Filter::Central, "wrap"), rough(RoughnessMethod::Lean, Bits8)),
+        mips("dds", None, words, rough(RoughnessMethod::Toksvig, Bits16)),
+        mips("ktx2", None, floats, None),
+        mips("dds", Some(BlockCompression::Bc5), bytes(Filter::Sobel, "clamp"), rough(RoughnessMethod::Lean, Bits8)),
+        mips("ktx2", Some(BlockCompression::Bc7), bytes(Filter::Central, "wrap,clamp"), None),
     ]
+}
+
+/// The bytes of a file that count: all, but of a KTX2 file those that name this version of texbake, and the places of what
+/// stands behind them.
+fn counted(path: &Path) -> Vec<u8> {
+    let bytes = std::fs::read(path).unwrap();
+    if path.extension().unwrap() != "ktx2" {
+        return bytes;
+    }
+    let levels: Vec<Vec<u8>> = ktx2::Reader::new(&bytes).unwrap().levels().map(|level| level.data.to_vec()).collect();
+    // From the format to the supercompression, and the data format descriptor (KTX 2.0, section 3).
+    let at = |word: usize| u32::from_le_bytes(bytes[word..word + 4].try_into().unwrap()) as usize;
+    let descriptor = &bytes[at(48)..at(48) + at(52)];
+    [&bytes[12..48], descriptor, &levels.concat()].concat()
 }
 
 #[test]
@@ -115,16 +163,17 @@ fn a_changed_byte_is_a_new_version() {
     let baker = Arc::new(Baker::cpu());
     for kind in ["u8", "u16le", "f32le"] {
         let (input, raw) = input(folder.path(), kind);
-        for (number, (extension, options)) in cases().into_iter().enumerate() {
+        for (number, Case { extension, options, write }) in cases().into_iter().enumerate() {
             let output = |map: &str| Some(folder.path().join(format!("{kind}_{number}_{map}.{extension}")));
+            let roughness = options.roughness.and_then(|_| output("roughness"));
             jobs.push(Job {
                 input: input.clone(),
-                outputs: Maps { normal: output("normal"), parallax: output("parallax"), roughness: None },
+                outputs: Maps { normal: output("normal"), parallax: output("parallax"), roughness },
                 normals: None,
                 neighbours: None,
                 read: ReadOptions { raw: Some(raw), ..ReadOptions::default() },
                 options,
-                write: WriteOptions::default(),
+                write,
                 baker: baker.clone(),
             });
         }
@@ -135,7 +184,7 @@ fn a_changed_byte_is_a_new_version() {
     let outputs = jobs.iter().flat_map(|job| job.outputs.iter());
     let found: Vec<(String, String)> = outputs
         .map(|path| {
-            let hash = blake3::hash(&std::fs::read(path).unwrap()).to_hex();
+            let hash = blake3::hash(&counted(path)).to_hex();
             (path.file_name().unwrap().to_str().unwrap().to_owned(), hash[..32].to_owned())
         })
         .collect();

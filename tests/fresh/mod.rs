@@ -5,6 +5,7 @@ mod concurrent;
 mod decisions;
 mod dry_run;
 mod kernel_version;
+mod levels;
 mod library;
 mod many;
 mod record;

@@ -6,7 +6,7 @@ mod damage;
 mod exr;
 mod found;
 mod gltf;
-mod hand_made_png;
+pub mod hand_made_png;
 pub mod hand_made_tiff;
 mod normal;
 mod obj;

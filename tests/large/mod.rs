@@ -1,7 +1,7 @@
 //! Maps larger than memory, and the tiles of one: streamed results are those of maps in memory, whatever the file, and
 //! no size needs more memory.
 
-mod files;
+pub mod files;
 #[cfg(feature = "cli")]
 mod neighbours;
 #[cfg(all(feature = "cli", target_os = "linux"))]
