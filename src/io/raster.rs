@@ -7,13 +7,13 @@ use crate::error::{Error, Result};
 use crate::map::HeightType;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom, Take};
 use std::path::Path;
 
 /// Opens a file, which is decoded when its first row is asked for.
 pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<Opened> {
     let file = input::open(path)?;
-    // The decoders of these two hold the stored bytes, and read them before anything else can be asked.
+    // The decoders of these two hold the stored bytes.
     let is_held = matches!(format, ImageFormat::Jpeg | ImageFormat::WebP);
     let held = if is_held { file.metadata().map_err(Error::io(path))?.len() } else { 0 };
     limits::check_stored(path, held, max_bytes)?;
@@ -28,7 +28,7 @@ pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<O
         _ => false,
     };
     file.rewind().map_err(Error::io(path))?;
-    let mut decoder = decoder(path, file, format, max_bytes)?;
+    let mut decoder = decoder(path, head(file, format).map_err(Error::io(path))?, format, max_bytes)?;
 
     let (width, height) = decoder.dimensions();
     let size = limits::size(path, width.into(), height.into())?;
@@ -52,12 +52,12 @@ pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<O
     Ok(Opened { says_srgb: srgb::is_named_by(&profile), lossy, ..Opened::new(whole) })
 }
 
-fn decoder(
+fn decoder<F: BufRead + Seek + 'static>(
     path: &Path,
-    file: BufReader<File>,
+    file: F,
     format: ImageFormat,
     max_bytes: u64,
-) -> Result<impl ImageDecoder + use<>> {
+) -> Result<impl ImageDecoder + use<F>> {
     let mut reader = ImageReader::with_format(file, format);
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(max_bytes);
@@ -74,6 +74,36 @@ fn decode(path: &Path, format: ImageFormat, layout: Layout, max_bytes: u64) -> R
     }
     decoder.read_image(&mut samples).map_err(reason(path))?;
     Ok(Samples::U8(samples))
+}
+
+/// What a decoder needs to tell the size: of a JPEG, whose decoder reads to the end before it can be asked anything, the
+/// segments up to the header of the first scan (ITU T.81, B.1.1.4 and B.2.1).
+fn head(mut file: BufReader<File>, format: ImageFormat) -> io::Result<Take<BufReader<File>>> {
+    let length = file.get_ref().metadata()?.len();
+    // Behind the start-of-image marker.
+    let mut end = 2;
+    while format == ImageFormat::Jpeg {
+        let mut segment = [0; 4];
+        file.seek(SeekFrom::Start(end))?;
+        match file.read_exact(&mut segment) {
+            Err(error) if error.kind() == ErrorKind::UnexpectedEof => segment.fill(0),
+            read => read?,
+        }
+        match segment {
+            [0xff, 0xff, ..] => end += 1,
+            [0xff, marker, length @ ..] => {
+                end += 2 + u64::from(u16::from_be_bytes(length));
+                if marker == 0xda {
+                    file.rewind()?;
+                    return Ok(file.take(end));
+                }
+            }
+            // The decoder says what is wrong.
+            _ => break,
+        }
+    }
+    file.rewind()?;
+    Ok(file.take(length))
 }
 
 /// Whether an end-of-image marker follows the last start-of-scan marker; coded data holds neither (ITU T.81, B.1.1.5).
