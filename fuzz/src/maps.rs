@@ -7,7 +7,7 @@ use std::path::Path;
 use texbake::inspect::{CheckOptions, check};
 use texbake::io::{ColorSpace, HeightFile, NormalFile, NormalReadOptions, RawKind, RawLayout, ReadOptions};
 use texbake::io::{open_heights, open_normals};
-use texbake::stream::Monitor;
+use texbake::stream::{Monitor, RowSource};
 use texbake::{
     Baker, BlendInputs, BlendMethod, BlendOptions, Channels, Codes, Convention, Depth, Encoding, Error, Grid,
     HeightMap, HeightType, Heights, HeightsMut, NormalFormat, NormalMap, NormalOptions, Size,
@@ -99,6 +99,14 @@ fn heights(path: &Path, options: &ReadOptions, seed: usize) -> Option<HeightMap>
     }
 }
 
+/// The last row, wherever the rows stand.
+fn read_last_row(rows: &mut dyn RowSource, row: HeightsMut<'_>) -> Result<(), Error> {
+    rows.rewind()?;
+    rows.skip(rows.size().height() - 1)?;
+    rows.read(row)?;
+    rows.rewind()
+}
+
 /// The last row, then the map in pieces of changing size, then the last row again.
 fn heights_in_pieces(path: &Path, options: &ReadOptions, seed: usize) -> Result<HeightMap, Error> {
     let HeightFile { mut rows, .. } = open_heights(path, options)?;
@@ -108,7 +116,7 @@ fn heights_in_pieces(path: &Path, options: &ReadOptions, seed: usize) -> Result<
     all.as_mut().bytes_mut().fill(0xa5);
     let mut last = [Codes::zeroed(depth(rows.height_type()), width), Codes::zeroed(depth(rows.height_type()), width)];
     if seed % 2 == 0 {
-        rows.read_last_row(room(&mut last[0], 0..width))?;
+        read_last_row(rows.as_mut(), room(&mut last[0], 0..width))?;
     }
     let (mut row, mut step) = (0, seed);
     while row < height {
@@ -116,7 +124,7 @@ fn heights_in_pieces(path: &Path, options: &ReadOptions, seed: usize) -> Result<
         rows.read(room(&mut all, row * width..end * width))?;
         (row, step) = (end, step.wrapping_mul(31) + 7);
     }
-    rows.read_last_row(room(&mut last[1], 0..width))?;
+    read_last_row(rows.as_mut(), room(&mut last[1], 0..width))?;
     for last in last.iter().skip(seed % 2) {
         assert!(last.as_ref().bytes() == all.as_ref().slice((height - 1) * width..height * width).bytes(), "last row");
     }

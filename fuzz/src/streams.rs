@@ -110,9 +110,13 @@ impl RowSource for Source {
         self.fill(first, rows)
     }
 
-    fn read_last_row(&mut self, row: HeightsMut<'_>) -> Result<()> {
+    fn rewind(&mut self) -> Result<()> {
         self.next_row = 0;
-        self.fill(self.map.size().height() - 1, row)
+        Ok(())
+    }
+
+    fn held_bytes(&self) -> u64 {
+        0
     }
 
     fn last_row_is_near(&self) -> bool {
@@ -121,6 +125,10 @@ impl RowSource for Source {
 }
 
 impl RowSink for Sink {
+    fn held_bytes(&self, _: usize) -> u64 {
+        0
+    }
+
     fn takes_first_row_last(&self) -> bool {
         self.takes_first_row_last
     }

@@ -242,5 +242,5 @@ fn stream(
         let map = read_map_watched(source.as_mut(), monitor)?;
         return bake(&mut MapBands::new(&map, plan.edges.y, band_rows));
     }
-    bake(&mut BandReader::new(source, plan.edges.y, order, band_rows)?)
+    bake(&mut BandReader::new(source, plan.edges.y, order, band_rows, monitor.stop())?)
 }

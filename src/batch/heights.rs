@@ -80,9 +80,14 @@ impl RowSource for Counted {
         Ok(())
     }
 
-    /// The row comes again in its place, and is counted there.
-    fn read_last_row(&mut self, row: HeightsMut<'_>) -> Result<()> {
-        self.rows.read_last_row(row)
+    fn skip(&mut self, rows: usize) -> Result<()> {
+        self.rows.skip(rows)
+    }
+
+    /// All rows come again, and are counted once.
+    fn rewind(&mut self) -> Result<()> {
+        self.beyond.store(0, Relaxed);
+        self.rows.rewind()
     }
 
     fn last_row_is_near(&self) -> bool {

@@ -169,11 +169,15 @@ impl Job {
                 format!("{}, as for its neighbours", neighbours.edges()),
             ));
         }
-        let size = open()?.size();
+        let size = {
+            // As every file is opened: what its header takes is held by one that waits for memory.
+            let _turn = monitor.turn();
+            open()?.size()
+        };
         let whole = Size::new(size.width() + 2, size.height() + 2)?;
         let options =
             BakeOptions { scale: options.scale.over(size, whole)?, edges: Edges::both(Edge::Clamp), ..*options };
-        let open = || Ok(Box::new(neighbours.around(&self.input, open()?, &self.read)?) as HeightRows);
+        let open = || Ok(Box::new(neighbours.around(&self.input, open()?, &self.read, monitor)?) as HeightRows);
         let cropped = |(sink, format)| Box::new(Cropped::new(sink, size, format)) as RowsOut;
         let create = |_| {
             let Maps { normal, parallax, .. } = self.create(size)?;

@@ -91,12 +91,20 @@ impl RowSource for Watched {
         Ok(())
     }
 
-    fn read_last_row(&mut self, row: HeightsMut<'_>) -> Result<()> {
-        self.rows.read_last_row(row)
+    fn skip(&mut self, rows: usize) -> Result<()> {
+        self.rows.skip(rows)
+    }
+
+    fn rewind(&mut self) -> Result<()> {
+        self.rows.rewind()
     }
 
     fn last_row_is_near(&self) -> bool {
         self.rows.last_row_is_near()
+    }
+
+    fn held_bytes(&self) -> u64 {
+        self.rows.held_bytes()
     }
 }
 

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::io::{Halo, HaloRows, Reach, ReadOptions, TileRow};
 use crate::map::{Edge, Edges};
 use crate::ops::bake::{BakeOptions, Filter};
-use crate::stream::HeightRows;
+use crate::stream::{HeightRows, Monitor};
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -90,7 +90,11 @@ pub struct TileFolders(HashMap<(PathBuf, TileTemplate), Tiles>);
 
 /// The tiles of a folder.
 #[derive(Debug)]
-struct Tiles(BTreeMap<Place, PathBuf>);
+struct Tiles {
+    files: BTreeMap<Place, PathBuf>,
+    /// The first and the last tile of each column of tiles.
+    columns: HashMap<i64, [Place; 2]>,
+}
 
 /// What lies around a tile, for one filter and one pair of edge modes.
 ///
@@ -137,27 +141,31 @@ impl TileFolders {
 impl Tiles {
     fn in_folder(folder: &Path, template: &TileTemplate) -> Result<Self> {
         let listed = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-        let mut tiles = BTreeMap::new();
+        let mut files = BTreeMap::new();
         for entry in std::fs::read_dir(listed).map_err(Error::io(listed))? {
             let name = entry.map_err(Error::io(listed))?.file_name();
             let Some(place) = name.to_str().and_then(|name| template.place(name)) else { continue };
             let path = folder.join(&name);
-            if let Some(other) = tiles.insert(place, path.clone()) {
+            if let Some(other) = files.insert(place, path.clone()) {
                 let reason = format!("it is the same tile as {}: column {}, row {}", other.display(), place.x, place.y);
                 return Err(Error::file(path, reason, "move one of them away"));
             }
         }
-        Ok(Self(tiles))
+        let mut columns = HashMap::new();
+        for place in files.keys() {
+            columns.entry(place.x).or_insert([*place; 2])[1] = *place;
+        }
+        Ok(Self { files, columns })
     }
 
     /// The first and the last tile of a row of tiles.
     fn row(&self, y: i64) -> Option<[Place; 2]> {
-        first_and_last(self.0.range(Place { y, x: i64::MIN }..=Place { y, x: i64::MAX }).map(|(place, _)| *place))
+        first_and_last(self.files.range(Place { y, x: i64::MIN }..=Place { y, x: i64::MAX }).map(|(place, _)| *place))
     }
 
     /// The first and the last tile of a column of tiles.
     fn column(&self, x: i64) -> Option<[Place; 2]> {
-        first_and_last(self.0.keys().filter(|place| place.x == x).copied())
+        self.columns.get(&x).copied()
     }
 }
 
@@ -202,7 +210,7 @@ impl Sides<'_> {
 
     /// The tile beside another one; where there is none, the one at the far side of a map that wraps, or itself.
     fn beyond(&self, place: Place, beside: Option<Place>, far: Option<Place>, edge: Edge) -> (Place, Reach) {
-        let find = |wanted: Option<Place>| self.tiles.0.get_key_value(&wanted?);
+        let find = |wanted: Option<Place>| self.tiles.files.get_key_value(&wanted?);
         let far = far.filter(|far| edge == Edge::Wrap && *far != place);
         match (find(beside), find(far)) {
             (Some((place, path)), _) => (*place, Reach { tile: Some(path.clone()), overlap: self.overlap }),
@@ -230,9 +238,15 @@ impl Neighbours {
         self.0.edges
     }
 
-    /// The rows of the tile `input` with their halo.
-    pub(super) fn around(&self, input: &Path, rows: HeightRows, read: &ReadOptions) -> Result<HaloRows> {
-        HaloRows::new(input, rows, self.0.clone(), read)
+    /// The rows of the tile `input` with their halo, until the monitor ends them.
+    pub(super) fn around(
+        &self,
+        input: &Path,
+        rows: HeightRows,
+        read: &ReadOptions,
+        monitor: &Monitor,
+    ) -> Result<HaloRows> {
+        HaloRows::new(input, rows, self.0.clone(), read, monitor.stop())
     }
 
     /// The tiles that are read beside the tile itself, each once.

@@ -48,13 +48,11 @@ impl Resources {
         let Some(ByteSize(bytes)) = self.memory else { return Ok(Monitor::default()) };
         let resident = memory_stats::memory_stats().map_or(0, |stats| stats.physical_mem as u64);
         let taken = resident + BESIDE_ROWS;
-        match bytes.checked_sub(taken).filter(|left| *left > 0) {
-            Some(left) => Ok(Monitor::with_memory(left)),
-            None => {
-                let range = format!("above {}M, which the program takes before any file", taken.div_ceil(1 << 20));
-                Err(Error::Parameter { parameter: "memory", value: bytes.to_string(), range })
-            }
+        if bytes <= taken {
+            let range = format!("above {}M, which the program takes before any file", taken.div_ceil(1 << 20));
+            return Err(Error::Parameter { parameter: "memory", value: bytes.to_string(), range });
         }
+        Ok(Monitor::with_memory(bytes, taken))
     }
 }
 

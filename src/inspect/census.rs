@@ -424,4 +424,8 @@ impl NormalSource for Counted {
         self.census.lock().unwrap_or_else(PoisonError::into_inner).add_rows(rows.as_ref());
         Ok(())
     }
+
+    fn held_bytes(&self) -> u64 {
+        self.source.held_bytes()
+    }
 }

@@ -88,6 +88,10 @@ impl NormalSource for Flat {
         }
         Ok(())
     }
+
+    fn held_bytes(&self) -> u64 {
+        0
+    }
 }
 
 impl Flat {
@@ -123,6 +127,10 @@ impl NormalSource for Flattened {
             CodesMut::F32(codes) => flatten(codes, channels, FLAT_F32, |code| code),
         }
         Ok(())
+    }
+
+    fn held_bytes(&self) -> u64 {
+        self.0.held_bytes()
     }
 }
 

@@ -192,7 +192,7 @@ impl HeightRows {
     }
 
     /// Goes to the row that shall be read next.
-    pub fn seek(&mut self, row: usize) -> Result<()> {
+    fn seek(&mut self, row: usize) -> Result<()> {
         self.samples.seek(row)?;
         self.next_row = row;
         Ok(())
@@ -268,9 +268,7 @@ impl RowSource for HeightRows {
         self.seek(self.next_row + rows)
     }
 
-    fn read_last_row(&mut self, mut row: HeightsMut<'_>) -> Result<()> {
-        self.seek(self.layout.size.height() - 1)?;
-        self.read(part_mut(&mut row, 0..self.layout.size.width()))?;
+    fn rewind(&mut self) -> Result<()> {
         self.seek(0)
     }
 

@@ -20,6 +20,12 @@ impl Cropped {
 }
 
 impl RowSink for Cropped {
+    /// What the sink holds, and the rows without their border.
+    fn held_bytes(&self, rows: usize) -> u64 {
+        let cropped = rows * self.size.width() * self.format.bytes();
+        self.sink.held_bytes(rows) + cropped as u64
+    }
+
     fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
         let Self { size, format, .. } = *self;
         let (width, texel_bytes) = (size.width(), format.bytes());

@@ -1,10 +1,11 @@
 //! A tile of a larger map with the texels around it: one more row above and below, one more column on either side.
 
+use super::input::Found;
 use super::samples::{Samples, copy, len, part, part_mut};
 use super::{ReadOptions, open_heights};
 use crate::error::{Error, Result};
 use crate::map::{Edges, HeightType, HeightsMut, Size};
-use crate::stream::{HeightRows, RowSource};
+use crate::stream::{HeightRows, RowSource, Stop, piece_rows};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -45,11 +46,16 @@ impl Halo {
 
 /// The rows of a tile with its halo, from the one above to the one below; each begins and ends a texel further out.
 ///
-/// The tiles to the left and right are read beside it, and a row each of those above and below.
+/// The tiles to the left and right are read beside it, and a row each of those above and below. None of them may change
+/// before the last row is given.
 pub(crate) struct HaloRows {
     path: PathBuf,
     read: ReadOptions,
     halo: Halo,
+    /// The tiles around it, as they were found.
+    around: Vec<Found>,
+    /// Ends the way to a row of a tile above.
+    stop: Stop,
     size: Size,
     body: WideRows,
     /// The tile's own row that stands below its last one, if no other tile is there.
@@ -92,12 +98,13 @@ impl fmt::Display for Halo {
 }
 
 impl HaloRows {
-    /// `rows` are those of the tile at `path`; the tiles around it are read by the same options.
+    /// `rows` are those of the tile at `path`; the tiles around it are read by the same options, until `stop`.
     ///
     /// # Errors
     /// As [`open_heights`]; [`Error::File`] if another tile has another size or type, or shares too much with this one.
-    pub fn new(path: &Path, rows: HeightRows, halo: Halo, read: &ReadOptions) -> Result<Self> {
+    pub fn new(path: &Path, rows: HeightRows, halo: Halo, read: &ReadOptions, stop: Stop) -> Result<Self> {
         let (inner, height_type) = (rows.size(), rows.height_type());
+        let around = halo.tiles().into_iter().map(Found::at).collect::<Result<_>>()?;
         for tile in halo.tiles() {
             check_alike(path, (inner, height_type), tile, &open_heights(tile, read)?.rows)?;
         }
@@ -115,7 +122,7 @@ impl HaloRows {
             (row, Samples::zeroed(height_type, size.width()))
         };
         let below = under.tile.tile.is_none().then(stands_below);
-        Ok(Self { path: path.into(), read: read.clone(), size, body, below, next_row: 0, halo })
+        Ok(Self { path: path.into(), read: read.clone(), size, body, below, next_row: 0, halo, around, stop })
     }
 
     /// A row of the tile above or below, or of the tile itself in its place.
@@ -130,7 +137,7 @@ impl HaloRows {
         };
         let path = tile.tile.as_deref().unwrap_or(&self.path);
         let mut rows = WideRows::new(open_heights(path, &self.read)?.rows, ends, self.halo.edges, &self.read)?;
-        rows.skip(place).and_then(|()| rows.read(row)).map_err(named(path))
+        rows.skip(place, &self.stop).and_then(|()| rows.read(row)).map_err(named(path))
     }
 }
 
@@ -152,12 +159,18 @@ impl WideRows {
         Ok(Self { ends: [end(&ends[0], true)?, end(&ends[1], false)?], rows })
     }
 
-    fn skip(&mut self, count: usize) -> Result<()> {
-        self.rows.skip(count)?;
-        self.ends
-            .iter_mut()
-            .filter_map(|end| end.beside.as_mut())
-            .try_for_each(|(path, rows, _)| rows.skip(count).map_err(named(path)))
+    /// Goes past the next rows, piece by piece: those of a file without entry points are decoded.
+    fn skip(&mut self, count: usize, stop: &Stop) -> Result<()> {
+        let piece_rows = piece_rows(self.rows.size(), self.rows.height_type());
+        for first in (0..count).step_by(piece_rows) {
+            let rows = piece_rows.min(count - first);
+            stop.check()?;
+            self.rows.skip(rows)?;
+            for (path, beside, _) in self.ends.iter_mut().filter_map(|end| end.beside.as_mut()) {
+                beside.skip(rows).map_err(named(path))?;
+            }
+        }
+        Ok(())
     }
 
     /// Reads the next row and the texels at its ends.
@@ -209,11 +222,11 @@ impl RowSource for HaloRows {
             }
             self.next_row += 1;
         }
-        Ok(())
+        if self.next_row > last { self.around.iter().try_for_each(Found::check) } else { Ok(()) }
     }
 
     /// Its first and last rows are there already: what lies beyond them is never asked for.
-    fn read_last_row(&mut self, _: HeightsMut<'_>) -> Result<()> {
+    fn rewind(&mut self) -> Result<()> {
         Err(Error::parameter("edge", "wrap", "clamp around a tile with its halo"))
     }
 
@@ -252,5 +265,49 @@ fn named(path: &Path) -> impl FnOnce(Error) -> Error + '_ {
             Error::file(path, reason, "replace it in the map, or export the map without no-data texels")
         }
         error => error,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::Edge;
+    use crate::stream::Monitor;
+    use std::fs::{self, File};
+    use std::time::SystemTime;
+
+    const SIDE: usize = 4;
+
+    /// The rows of a tile between two others.
+    fn rows(folder: &Path, stop: Stop) -> HaloRows {
+        let tiles = ["above.raw", "own.raw", "below.raw"].map(|name| folder.join(name));
+        tiles.iter().for_each(|tile| fs::write(tile, [7; SIDE * SIDE]).unwrap());
+        let read = ReadOptions { raw: Some(format!("{SIDE}x{SIDE}:u8").parse().unwrap()), ..ReadOptions::default() };
+        let [above, own, below] = tiles;
+        let row = |tile| TileRow { tile: Reach { tile, overlap: 0 }, ends: Default::default() };
+        let halo = Halo { rows: [row(Some(above)), row(None), row(Some(below))], edges: Edges::both(Edge::Clamp) };
+        HaloRows::new(&own, open_heights(&own, &read).unwrap().rows, halo, &read, stop).unwrap()
+    }
+
+    #[test]
+    fn a_tile_that_changes_spoils_its_neighbours() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["above.raw", "below.raw"] {
+            let mut rows = rows(folder.path(), Stop::default());
+            let mut read = |count: usize| rows.read(HeightsMut::U8(&mut vec![0; count * (SIDE + 2)]));
+            read(SIDE + 1).unwrap();
+            let changed = File::options().write(true).open(folder.path().join(name)).unwrap();
+            changed.set_modified(SystemTime::UNIX_EPOCH).unwrap();
+            let error = read(1).unwrap_err().to_string();
+            assert!(error.contains(&format!("{name}: it changed or went while it was read")), "{error}");
+        }
+    }
+
+    #[test]
+    fn the_way_to_a_row_of_the_tile_above_can_be_stopped() {
+        let (folder, monitor) = (tempfile::tempdir().unwrap(), Monitor::default());
+        let mut rows = rows(folder.path(), monitor.stop());
+        monitor.cancel();
+        assert!(matches!(rows.read(HeightsMut::U8(&mut [0; SIDE + 2])), Err(Error::Cancelled)));
     }
 }

@@ -19,7 +19,7 @@ const WEBP_TEXEL_BYTES: usize = 4;
 /// Opens a file, which is decoded when its first row is asked for.
 pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<Opened> {
     let file = input::open(path)?;
-    // The decoders of these two hold the stored bytes, and read them before anything else can be asked.
+    // The decoders of these two hold the stored bytes.
     let is_held = matches!(format, ImageFormat::Jpeg | ImageFormat::WebP);
     let held = if is_held { file.metadata().map_err(Error::io(path))?.len() } else { 0 };
     limits::check_stored(path, held, max_bytes)?;
@@ -63,12 +63,12 @@ pub(super) fn open(path: &Path, format: ImageFormat, max_bytes: u64) -> Result<O
     Ok(Opened { says_srgb: srgb::is_named_by(&profile), lossy, ..Opened::new(whole) })
 }
 
-fn decoder(
+fn decoder<F: BufRead + Seek + 'static>(
     path: &Path,
-    file: BufReader<File>,
+    file: F,
     format: ImageFormat,
     max_bytes: u64,
-) -> Result<impl ImageDecoder + use<>> {
+) -> Result<impl ImageDecoder + use<F>> {
     let mut reader = ImageReader::with_format(file, format);
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(max_bytes);

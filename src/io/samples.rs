@@ -31,9 +31,7 @@ pub(super) trait SampleRows: Send {
     fn last_row_is_near(&self) -> bool;
 
     /// Bytes that are held at most while rows are read.
-    fn held_bytes(&self) -> u64 {
-        self.layout().row_bytes() as u64
-    }
+    fn held_bytes(&self) -> u64;
 }
 
 /// An opened file and what its header says.

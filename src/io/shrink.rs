@@ -114,10 +114,12 @@ impl RowSource for Shrunk {
         Ok(())
     }
 
-    fn read_last_row(&mut self, row: HeightsMut<'_>) -> Result<()> {
-        self.rows.seek(self.rows.size().height() - self.by)?;
-        self.read(row)?;
-        self.rows.seek(0)
+    fn skip(&mut self, rows: usize) -> Result<()> {
+        self.rows.skip(self.by * rows)
+    }
+
+    fn rewind(&mut self) -> Result<()> {
+        self.rows.rewind()
     }
 
     fn last_row_is_near(&self) -> bool {

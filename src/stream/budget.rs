@@ -11,6 +11,8 @@ pub(super) struct Budget {
     /// Held by the one bake that opens its files and waits for its share: others wait with nothing open.
     turn: Mutex<()>,
     all: u64,
+    /// What the process holds besides.
+    taken: u64,
     free: Mutex<u64>,
     given_back: Condvar,
 }
@@ -32,8 +34,10 @@ pub(crate) struct Share<'a> {
 const LOOK: Duration = Duration::from_millis(50);
 
 impl Budget {
-    pub fn new(bytes: u64) -> Self {
-        Self { turn: Mutex::default(), all: bytes, free: Mutex::new(bytes), given_back: Condvar::new() }
+    /// `bytes` of a process that has `taken` some of them.
+    pub fn new(bytes: u64, taken: u64) -> Self {
+        let free = Mutex::new(bytes.saturating_sub(taken));
+        Self { turn: Mutex::default(), all: bytes, taken, free, given_back: Condvar::new() }
     }
 
     /// Waits for the turn of one bake.
@@ -42,9 +46,10 @@ impl Budget {
     }
 
     fn take(&self, bytes: u64, monitor: &Monitor) -> Result<Share<'_>> {
-        if bytes > self.all {
-            let range = format!("at least {} for this file", megabytes(bytes));
-            return Err(Error::parameter("memory left for rows", megabytes(self.all), range));
+        let needed = self.taken.saturating_add(bytes);
+        if needed > self.all {
+            let range = format!("at least {}M for this file", needed.div_ceil(MEBIBYTE));
+            return Err(Error::parameter("memory", as_given(self.all), range));
         }
         let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
         while *free < bytes {
@@ -79,9 +84,11 @@ impl Drop for Share<'_> {
     }
 }
 
-/// As `--memory` takes it, rounded up.
-fn megabytes(bytes: u64) -> String {
-    format!("{}M", bytes.div_ceil(1 << 20))
+const MEBIBYTE: u64 = 1 << 20;
+
+/// As a user writes it.
+fn as_given(bytes: u64) -> String {
+    if bytes.is_multiple_of(MEBIBYTE) { format!("{}M", bytes / MEBIBYTE) } else { bytes.to_string() }
 }
 
 #[cfg(test)]
@@ -91,7 +98,7 @@ mod tests {
 
     #[test]
     fn shares_never_exceed_the_budget() {
-        let (monitor, budget) = (Monitor::default(), Budget::new(10));
+        let (monitor, budget) = (Monitor::default(), Budget::new(17, 7));
         let (held, most) = (AtomicU64::new(0), AtomicU64::new(0));
         std::thread::scope(|scope| {
             for bytes in [3, 4, 5, 6, 10, 1] {
@@ -111,9 +118,9 @@ mod tests {
 
     #[test]
     fn what_never_fits_is_refused_and_what_waits_can_be_stopped() {
-        let (monitor, budget) = (Monitor::default(), Budget::new(3 << 20));
+        let (monitor, budget) = (Monitor::default(), Budget::new(64 << 20, 61 << 20));
         let error = budget.turn().take((3 << 20) + 1, &monitor).unwrap_err();
-        assert_eq!(error.to_string(), "memory left for rows is 3M: it must be at least 4M for this file");
+        assert_eq!(error.to_string(), "memory is 64M: it must be at least 65M for this file");
         let _all = budget.turn().take(3 << 20, &monitor).unwrap();
         monitor.cancel();
         assert!(matches!(budget.turn().take(1, &monitor), Err(Error::Cancelled)));

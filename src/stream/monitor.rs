@@ -2,22 +2,39 @@
 
 use super::budget::{Budget, Turn};
 use crate::error::{Error, Result};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
 /// Counts texels as they are baked, stops a bake on request, and bounds the memory of bakes that run at the same time.
 #[derive(Debug, Default)]
 pub struct Monitor {
     texels: AtomicU64,
-    cancelled: AtomicBool,
+    stop: Stop,
     memory: Option<Budget>,
 }
 
+/// Whether bakes shall end, for threads that read ahead of them.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Stop(Arc<AtomicBool>);
+
+impl Stop {
+    /// Fails if they shall.
+    pub fn check(&self) -> Result<()> {
+        if self.0.load(Relaxed) { Err(Error::Cancelled) } else { Ok(()) }
+    }
+}
+
 impl Monitor {
-    /// Bakes that this monitor watches share `bytes` of memory for their rows: for what a source holds of its file, the
-    /// bands on their way, a backend's buffers, and what a sink gathers. One that finds too little left waits for the
-    /// end of another; one that needs more than there is fails with [`Error::Parameter`] before it has any.
-    pub fn with_memory(bytes: u64) -> Self {
-        Self { memory: Some(Budget::new(bytes)), ..Self::default() }
+    /// Bakes that this monitor watches keep the process to `bytes` of memory, of which it has `taken` already: they share
+    /// what is left, for what a source holds of its file, the bands on their way, a backend's buffers, and what a sink
+    /// gathers. One that finds too little left waits for the end of another; one that needs more than there is fails with
+    /// [`Error::Parameter`] before it has any.
+    ///
+    /// A file is opened before it is known what it needs, one at a time. What stands before its rows is not counted then:
+    /// tables of strips, tiles and blocks, colour profiles and other metadata. Coded rows are not held by a file that
+    /// waits, whatever its format.
+    pub fn with_memory(bytes: u64, taken: u64) -> Self {
+        Self { memory: Some(Budget::new(bytes, taken)), ..Self::default() }
     }
 
     /// Texels baked so far.
@@ -25,14 +42,15 @@ impl Monitor {
         self.texels.load(Relaxed)
     }
 
-    /// Asks every bake that this monitor watches to end with [`Error::Cancelled`] at its next band.
+    /// Asks every bake that this monitor watches to end with [`Error::Cancelled`] at its next band, or
+    /// piece of a map that is read before the first one.
     pub fn cancel(&self) {
-        self.cancelled.store(true, Relaxed);
+        self.stop.0.store(true, Relaxed);
     }
 
     /// Whether [`Monitor::cancel`] was called.
     pub fn is_cancelled(&self) -> bool {
-        self.cancelled.load(Relaxed)
+        self.stop.check().is_err()
     }
 
     /// Waits until a bake may open its files, and take memory for them.
@@ -53,6 +71,11 @@ impl Monitor {
 
     /// Fails if the bake shall end.
     pub(crate) fn check(&self) -> Result<()> {
-        if self.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }
+        self.stop.check()
+    }
+
+    /// The same for another thread.
+    pub(crate) fn stop(&self) -> Stop {
+        self.stop.clone()
     }
 }

@@ -23,9 +23,7 @@ pub trait NormalSource: Send {
     fn read(&mut self, rows: CodesMut<'_>) -> Result<()>;
 
     /// Bytes that the source holds at most while it is read, without the rows that it gives.
-    fn held_bytes(&self) -> u64 {
-        (self.size().width() * self.format().texel().bytes()) as u64
-    }
+    fn held_bytes(&self) -> u64;
 }
 
 impl NormalSource for Box<dyn NormalSource> {
@@ -111,6 +109,11 @@ impl<M: Borrow<NormalMap> + Send> NormalSource for Tiled<M> {
             self.next_row += 1;
         }
         Ok(())
+    }
+
+    /// The map, whoever made it.
+    fn held_bytes(&self) -> u64 {
+        self.map.borrow().codes().bytes().len() as u64
     }
 }
 

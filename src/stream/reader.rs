@@ -3,7 +3,7 @@
 use super::ahead::ReadAhead;
 use super::band::{Band, HeightBand, HeightBands};
 use super::channel::Filling;
-use super::monitor::Monitor;
+use super::monitor::{Monitor, Stop};
 use super::order::RowOrder;
 use crate::error::Result;
 use crate::map::{Edge, Grid, HeightMap, HeightType, HeightsMut, Size};
@@ -22,7 +22,7 @@ pub trait RowSource: Send {
     /// The reason that the file gives; [`crate::Error::NotFinite`] for a height that has no slope.
     fn read(&mut self, rows: HeightsMut<'_>) -> Result<()>;
 
-    /// Goes past the next rows, never more than are left.
+    /// Goes past the next rows, never more than are left. A source that stands before another one hands this on.
     ///
     /// # Errors
     /// As [`RowSource::read`].
@@ -31,23 +31,22 @@ pub trait RowSource: Send {
         (0..rows).try_for_each(|_| self.read(row.rows_mut(0, 1)))
     }
 
-    /// Reads the last row and goes back to the first: what a map that wraps needs before anything else.
+    /// Goes back to the first row: a map that wraps needs its last row before anything else.
     ///
     /// # Errors
     /// As [`RowSource::read`].
-    fn read_last_row(&mut self, row: HeightsMut<'_>) -> Result<()>;
+    fn rewind(&mut self) -> Result<()>;
 
-    /// Whether [`RowSource::read_last_row`] costs about as much as reading a row: a seek, not a whole decoding. Where
-    /// it costs more, a map of moderate size is held in memory instead.
+    /// Whether to skip to the last row costs about as much as reading a row: a seek, not a whole decoding. Where it costs
+    /// more, a map of moderate size is held in memory instead, and one that is not is skipped piece by piece, so that it
+    /// can be stopped.
     fn last_row_is_near(&self) -> bool {
         false
     }
 
     /// Bytes that the source holds at most while it is read, without the rows that it gives: what it decodes at once,
     /// and what it keeps to find its rows.
-    fn held_bytes(&self) -> u64 {
-        (self.size().width() * self.height_type().bytes()) as u64
-    }
+    fn held_bytes(&self) -> u64;
 }
 
 /// The bands of a [`RowSource`]; a thread reads ahead.
@@ -56,15 +55,16 @@ pub(crate) struct BandReader(ReadAhead<BandBuffer>);
 impl BandReader {
     /// Reads `source` in bands of `band_rows` rows; `edge` says what lies above the first row and below the last.
     ///
-    /// Row 0 comes last only of a map that wraps and has another row.
+    /// Row 0 comes last only of a map that wraps and has another row. Between bands a reader is ended by being dropped,
+    /// and on its way to the last row, before the first band, by `stop`.
     ///
     /// # Errors
     /// [`crate::Error::Threads`].
-    pub fn new(source: Box<dyn RowSource>, edge: Edge, order: RowOrder, band_rows: usize) -> Result<Self> {
+    pub fn new(source: Box<dyn RowSource>, edge: Edge, order: RowOrder, band_rows: usize, stop: Stop) -> Result<Self> {
         assert!(band_rows > 0, "a band has rows");
         assert!(order == RowOrder::FromTop || edge == Edge::Wrap && source.size().height() > 1, "row 0 cannot be last");
         let read_all = move |mut filling: Filling<BandBuffer>| {
-            let mut cutter = BandCutter::new(source, edge, order)?;
+            let mut cutter = BandCutter::new(source, edge, order, &stop)?;
             while let Some(buffer) = filling.take() {
                 let buffer = buffer.unwrap_or_else(|| cutter.buffer(band_rows));
                 match cutter.next(buffer, band_rows)? {
@@ -103,11 +103,11 @@ struct BandCutter {
 }
 
 impl BandCutter {
-    fn new(mut source: Box<dyn RowSource>, edge: Edge, order: RowOrder) -> Result<Self> {
+    fn new(mut source: Box<dyn RowSource>, edge: Edge, order: RowOrder, stop: &Stop) -> Result<Self> {
         let mut last_row = Vec::new();
         if edge == Edge::Wrap && order == RowOrder::FromTop {
             let mut row = BandBuffer::new(source.size().width(), source.height_type(), 1);
-            source.read_last_row(row.rows_mut(0, 1))?;
+            read_last_row(source.as_mut(), row.rows_mut(0, 1), stop)?;
             row.check_finite(0, 1, source.size().height() - 1)?;
             last_row = row.slot(0).to_vec();
         }
@@ -252,6 +252,18 @@ impl BandBuffer {
     }
 }
 
+/// Reads the last row and goes back to the first.
+fn read_last_row(source: &mut dyn RowSource, row: HeightsMut<'_>, stop: &Stop) -> Result<()> {
+    let before = source.size().height() - 1;
+    let piece_rows = if source.last_row_is_near() { before } else { piece_rows(source.size(), source.height_type()) };
+    for first in (0..before).step_by(piece_rows.max(1)) {
+        stop.check()?;
+        source.skip(piece_rows.min(before - first))?;
+    }
+    source.read(row)?;
+    source.rewind()
+}
+
 /// Reads a whole map.
 ///
 /// # Errors
@@ -262,6 +274,11 @@ pub fn read_map(source: &mut dyn RowSource) -> Result<HeightMap> {
 
 /// Bytes of a map that are read between two looks at the monitor.
 const PIECE_BYTES: usize = 1 << 20;
+
+/// Rows of a map that are read, or skipped, between two looks at the monitor.
+pub(crate) fn piece_rows(size: Size, height_type: HeightType) -> usize {
+    (PIECE_BYTES / (size.width() * height_type.bytes())).max(1)
+}
 
 /// Reads a whole map, unless the monitor ends it.
 ///
@@ -274,7 +291,7 @@ pub(crate) fn read_map_watched(source: &mut dyn RowSource, monitor: &Monitor) ->
         rows: fn(&mut [T]) -> HeightsMut<'_>,
     ) -> Result<Grid<T>> {
         let size = source.size();
-        let piece_rows = (PIECE_BYTES / (size.width() * size_of::<T>())).max(1);
+        let piece_rows = piece_rows(size, source.height_type());
         let mut heights = vec![T::default(); size.texels()];
         for piece in heights.chunks_mut(piece_rows * size.width()) {
             monitor.check()?;

@@ -1,7 +1,8 @@
 //! Bands of every height are the rows of the map and what its edge says lies beyond; what fails on the way lets go.
 
 use super::{
-    Band, BandReader, CodeSink, CodeWriter, HeightBand, HeightBands, MapBands, RowOrder, RowSink, RowSource, read_map,
+    Band, BandReader, CodeSink, CodeWriter, HeightBand, HeightBands, MapBands, RowOrder, RowSink, RowSource, Stop,
+    read_map,
 };
 use crate::error::Result;
 use crate::map::{CodesRef, Edge, Grid, HeightMap, HeightType, Heights, HeightsMut, NormalFormat, Size};
@@ -49,10 +50,13 @@ impl RowSource for MemorySource {
         Ok(())
     }
 
-    fn read_last_row(&mut self, row: HeightsMut<'_>) -> Result<()> {
-        self.copy(self.size().height() - 1, row);
+    fn rewind(&mut self) -> Result<()> {
         self.next_row = 0;
         Ok(())
+    }
+
+    fn held_bytes(&self) -> u64 {
+        0
     }
 }
 
@@ -116,7 +120,8 @@ fn bands_hold_the_map_and_its_halo() {
                     let what = format!("{} rows of {}, {edge}, bands of {band_rows}", height, map.height_type());
                     let source = || Box::new(MemorySource::new(map.clone())) as Box<dyn RowSource>;
                     let mut in_memory = MapBands::new(map, edge, band_rows);
-                    let mut read = BandReader::new(source(), edge, RowOrder::FromTop, band_rows).expect("a thread");
+                    let mut read = BandReader::new(source(), edge, RowOrder::FromTop, band_rows, Stop::default())
+                        .expect("a thread");
                     for bands in [&mut in_memory as &mut dyn HeightBands, &mut read] {
                         let mut first = 0;
                         while let Some(band) = bands.next().expect("rows") {
@@ -144,7 +149,8 @@ fn the_first_row_can_come_last() {
         let rows = rows_of_map(&map);
         for band_rows in [1, 2, 3, 4, 8, 30, 31, 1000] {
             let source = Box::new(MemorySource::new(map.clone()));
-            let mut bands = BandReader::new(source, Edge::Wrap, RowOrder::FirstRowLast, band_rows).expect("a thread");
+            let mut bands = BandReader::new(source, Edge::Wrap, RowOrder::FirstRowLast, band_rows, Stop::default())
+                .expect("a thread");
             let (mut bodies, mut starts) = (Rows::new(), Vec::new());
             while let Some(band) = bands.next().expect("rows") {
                 let first = (1 + bodies.len()) % height;
@@ -185,7 +191,8 @@ fn a_reader_that_is_dropped_has_closed_its_source() {
     for bands_used in [0, 1, 2] {
         let source = MemorySource::new(tens(1000));
         let open = Arc::downgrade(&source.open);
-        let mut bands = BandReader::new(Box::new(source), Edge::Wrap, RowOrder::FromTop, 10).expect("a thread");
+        let mut bands =
+            BandReader::new(Box::new(source), Edge::Wrap, RowOrder::FromTop, 10, Stop::default()).expect("a thread");
         for _ in 0..bands_used {
             bands.next().expect("rows").expect("a band");
         }
@@ -198,6 +205,10 @@ fn a_reader_that_is_dropped_has_closed_its_source() {
 struct Nowhere;
 
 impl RowSink for Nowhere {
+    fn held_bytes(&self, _: usize) -> u64 {
+        0
+    }
+
     fn write(&mut self, _: usize, _: CodesRef<'_>) -> Result<()> {
         Ok(())
     }

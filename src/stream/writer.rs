@@ -38,10 +38,7 @@ pub trait RowSink: Send {
     fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()>;
 
     /// Bytes that the sink holds at most while it writes, besides the rows that it is given, `rows` of them at once.
-    fn held_bytes(&self, rows: usize) -> u64 {
-        let _ = rows;
-        0
-    }
+    fn held_bytes(&self, rows: usize) -> u64;
 
     /// What takes the rows of the smaller mip levels, while those of the largest come here; `None` if the file has one
     /// level. It must be dropped before [`RowSink::complete`].

@@ -111,7 +111,7 @@ fn settings_choose_levels_file_by_file() {
     let of = |index: usize, option: &str| report["files"][index]["options"][option].clone();
     assert_eq!(
         [of(0, "mips"), of(1, "roughness_method"), of(2, "mips")],
-        [true.into(), "toksvig".into(), false.into()]
+        [serde_json::Value::from(true), "toksvig".into(), false.into()]
     );
 
     // The command line is stronger, and a format without levels leaves those of the settings.

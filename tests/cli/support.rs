@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 #[cfg(target_os = "linux")]
-use std::process::Child;
+use std::process::{Child, Stdio};
 use std::process::{Command, Output};
 #[cfg(target_os = "linux")]
 use std::time::Duration;
@@ -139,7 +139,18 @@ impl Run {
     }
 }
 
-/// The most memory that a child was seen to hold, which must succeed: its own record, read until it ends.
+/// The most memory that a run on the CPU holds, which must succeed.
+#[cfg(target_os = "linux")]
+pub fn peak_of(mut command: Command) -> u64 {
+    let quiet = command.args(["--backend", "cpu", "-q"]).stderr(Stdio::inherit());
+    let peak = peak_bytes(&mut quiet.spawn().unwrap());
+    assert!(peak > 1 << 20, "{peak} bytes are no program's");
+    peak
+}
+
+/// The most memory that a child was seen to hold, which must succeed: its own record, read until it ends. The record of
+/// those that wait for it, ru_maxrss, would count what this process held when it started the child; what is missed here
+/// is the last millisecond, in which rows are freed.
 #[cfg(target_os = "linux")]
 pub fn peak_bytes(child: &mut Child) -> u64 {
     let status = format!("/proc/{}/status", child.id());

@@ -4,6 +4,7 @@ use super::paused::Paused;
 use super::watched::{PAUSE, reaches};
 use crate::cli::support::{Folder, Run, bumps8, bumps16};
 use crate::cli::tangents::{Model, sheet};
+use crate::io::support::read_last_row;
 use std::fs::{self, File, Permissions};
 use std::io::{Seek, SeekFrom, Write};
 use std::os::unix::fs::{PermissionsExt, symlink};
@@ -256,7 +257,7 @@ fn read_twice(path: &Path, between: impl FnOnce()) -> texbake::Result<Vec<u8>> {
             2 => HeightsMut::U16(&mut bytemuck::cast_slice_mut(&mut words)[..count]),
             _ => HeightsMut::F32(&mut bytemuck::cast_slice_mut(&mut words)[..count]),
         };
-        if is_last { rows.read_last_row(heights) } else { rows.read(heights) }
+        if is_last { read_last_row(rows.as_mut(), heights) } else { rows.read(heights) }
     };
     read(SIDE, true)?;
     between();

@@ -192,6 +192,10 @@ fn a_heatmap_is_black_where_nothing_differs_and_white_at_the_greatest() {
 struct Nowhere;
 
 impl RowSink for Nowhere {
+    fn held_bytes(&self, _: usize) -> u64 {
+        0
+    }
+
     fn write(&mut self, _: usize, _: CodesRef<'_>) -> Result<()> {
         panic!("nothing was to be painted")
     }

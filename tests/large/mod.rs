@@ -2,6 +2,7 @@
 //! no size needs more memory.
 
 pub mod files;
+mod interrupts;
 #[cfg(feature = "cli")]
 mod neighbours;
 #[cfg(all(feature = "cli", target_os = "linux"))]

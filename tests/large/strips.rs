@@ -1,6 +1,7 @@
 //! Strips that are unpacked row by row, beside the same samples in strips that the format's crate decodes at once.
 
 use crate::io::hand_made_tiff::Tiff;
+use crate::io::support::read_last_row;
 use crate::support::Random;
 use std::io::Write;
 use std::path::Path;
@@ -99,7 +100,7 @@ fn assert_holds(path: &Path, options: &ReadOptions, expected: &HeightMap, what: 
     macro_rules! assert_rows {
         ($kind:ident, $heights:expr) => {{
             let mut row = vec![Default::default(); WIDTH];
-            rows.read_last_row(HeightsMut::$kind(&mut row)).unwrap();
+            read_last_row(rows.as_mut(), HeightsMut::$kind(&mut row)).unwrap();
             assert!(row == $heights[(HEIGHT - 1) * WIDTH..], "{what}: the last row");
             rows.skip(HEIGHT / 2).unwrap();
             rows.read(HeightsMut::$kind(&mut row)).unwrap();
@@ -161,6 +162,41 @@ fn colours_side_by_side_and_in_planes() {
             std::fs::write(&large, planar.bytes()).unwrap();
             assert_holds(&large, &options, &expected, "in planes");
         }
+    }
+}
+
+/// What is skipped piece by piece is unpacked piece by piece, not when the row behind it is read.
+#[test]
+fn to_skip_is_to_unpack() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cut.tif");
+    let samples = samples(16, 1, 1);
+    for compression in [5, 8] {
+        let mut file = tiff(&samples, (16, 1), 1, HEIGHT, [compression, 1]);
+        let length = file.chunks[0].len();
+        file.chunks[0].truncate(length / 2);
+        std::fs::write(&path, file.bytes()).unwrap();
+        let mut rows = open_heights(&path, &ReadOptions::default()).unwrap().rows;
+        rows.skip(HEIGHT / 4).and_then(|()| rows.skip(HEIGHT / 8)).unwrap();
+        let error = rows.skip(HEIGHT / 2).unwrap_err().to_string();
+        assert!(error.contains("cut.tif: the file ends before its last row"), "{compression}: {error}");
+    }
+}
+
+/// As long together as they should be, and one too short: its last rows are not those that stand behind it.
+#[test]
+fn a_strip_that_another_one_makes_up_for_is_too_short() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cut.tif");
+    let samples = samples(16, 1, 1);
+    for moved in [1, 2 * WIDTH] {
+        let mut file = tiff(&samples, (16, 1), 1, HEIGHT * 2 / 3, [1, 1]);
+        let length = file.chunks[0].len();
+        let end = file.chunks[0].split_off(length - moved);
+        file.chunks[1].splice(0..0, end);
+        std::fs::write(&path, file.bytes()).unwrap();
+        let error = HeightMap::read(&path).map(drop).unwrap_err().to_string();
+        assert!(error.contains("cut.tif: the file ends before its last row"), "{moved}: {error}");
     }
 }
 

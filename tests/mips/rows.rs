@@ -38,6 +38,10 @@ impl Sink {
 }
 
 impl RowSink for Sink {
+    fn held_bytes(&self, _: usize) -> u64 {
+        0
+    }
+
     fn takes_first_row_last(&self) -> bool {
         self.first_row_last
     }

@@ -65,10 +65,13 @@ impl RowSource for MemorySource {
         Ok(())
     }
 
-    fn read_last_row(&mut self, row: HeightsMut<'_>) -> Result<()> {
-        self.copy(self.size().height() - 1, row);
+    fn rewind(&mut self) -> Result<()> {
         self.next_row = 0;
         Ok(())
+    }
+
+    fn held_bytes(&self) -> u64 {
+        0
     }
 }
 
@@ -91,6 +94,10 @@ struct MemorySink {
 }
 
 impl RowSink for MemorySink {
+    fn held_bytes(&self, _: usize) -> u64 {
+        0
+    }
+
     fn takes_first_row_last(&self) -> bool {
         self.first_row_last
     }
@@ -292,11 +299,12 @@ impl RowSource for Careless {
         Ok(())
     }
 
-    fn read_last_row(&mut self, row: HeightsMut<'_>) -> Result<()> {
-        let HeightsMut::F32(heights) = row else { panic!("floats") };
-        self.source.read_last_row(HeightsMut::F32(heights))?;
-        self.punch(self.size().height() - 1, HeightsMut::F32(heights));
-        Ok(())
+    fn rewind(&mut self) -> Result<()> {
+        self.source.rewind()
+    }
+
+    fn held_bytes(&self) -> u64 {
+        0
     }
 }
 
@@ -358,8 +366,12 @@ impl RowSource for Stopping {
         Ok(())
     }
 
-    fn read_last_row(&mut self, row: HeightsMut<'_>) -> Result<()> {
-        self.source.read_last_row(row)
+    fn rewind(&mut self) -> Result<()> {
+        self.source.rewind()
+    }
+
+    fn held_bytes(&self) -> u64 {
+        0
     }
 }
 

@@ -25,6 +25,10 @@ fn full() -> Error {
 }
 
 impl RowSink for Sink {
+    fn held_bytes(&self, _: usize) -> u64 {
+        0
+    }
+
     fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
         let rows_end = first + rows.len() / (self.row_codes);
         if self.cannot_write.is_some_and(|row| row < rows_end) {
@@ -130,6 +134,10 @@ impl NormalSource for Flat {
         let CodesMut::U8(rows) = rows else { panic!("8 bits") };
         rows.chunks_exact_mut(3).for_each(|texel| texel.copy_from_slice(&[128, 128, 255]));
         Ok(())
+    }
+
+    fn held_bytes(&self) -> u64 {
+        0
     }
 }
 

@@ -20,6 +20,9 @@ use weezl::{BitOrder, LzwStatus};
 /// Bytes that are read from the file at once.
 const READ_BYTES: usize = 256 << 10;
 
+/// Unpacked bytes up to which the last row of a strip is near its beginning.
+const NEAR_BYTES: usize = 64 << 20;
+
 /// What a directory says of strips.
 #[derive(Debug, Clone)]
 pub(super) struct Strips {
@@ -71,6 +74,10 @@ impl Strips {
         self.layout.size.height().div_ceil(self.rows_per_strip)
     }
 
+    fn are_packed(&self) -> bool {
+        self.compression != CompressionMethod::None
+    }
+
     /// Whether strips of this compression can be read row by row.
     pub fn stream(&self) -> bool {
         use CompressionMethod::{Deflate, LZW, None, OldDeflate};
@@ -86,15 +93,26 @@ impl Strips {
     fn check(&self, path: &Path, file_bytes: u64, max_bytes: u64) -> Result<()> {
         let Layout { size, .. } = self.layout;
         limits::check(path, size, 2 * self.row_bytes() as u128, max_bytes)?;
-        let stored: u64 = self.places.iter().map(|[_, length]| *length).fold(0, u64::saturating_add);
-        let claimed = self.row_bytes() as u128 * size.height() as u128 * self.planes as u128;
         match self.compression {
-            CompressionMethod::None if claimed > stored.min(file_bytes).into() => Err(truncated(path)),
+            CompressionMethod::None => {
+                let is_there = |(index, [offset, length]): (usize, &[u64; 2])| {
+                    let claimed = self.rows_of(index % self.strips_of_plane()) as u64 * self.row_bytes() as u64;
+                    claimed <= *length && offset.checked_add(claimed).is_some_and(|end| end <= file_bytes)
+                };
+                if self.places.iter().enumerate().all(is_there) { Ok(()) } else { Err(truncated(path)) }
+            }
             CompressionMethod::Deflate | CompressionMethod::OldDeflate => {
+                let stored: u64 = self.places.iter().map(|[_, length]| *length).fold(0, u64::saturating_add);
+                let claimed = self.row_bytes() as u128 * size.height() as u128 * self.planes as u128;
                 limits::check_deflated(path, size, claimed, stored.min(file_bytes))
             }
             _ => Ok(()),
         }
+    }
+
+    /// Rows of the strip `index` of a plane; the last one may have fewer.
+    fn rows_of(&self, index: usize) -> usize {
+        self.rows_per_strip.min(self.layout.size.height() - index * self.rows_per_strip)
     }
 
     /// Opens the strip with the row `row` of a plane, at that row.
@@ -104,9 +122,9 @@ impl Strips {
         let [offset, length] = self.places[plane * self.strips_of_plane() + index];
         let mut file = BufReader::with_capacity(READ_BYTES, input::open(path)?);
         let mut begin = |offset| file.seek(SeekFrom::Start(offset)).map_err(Error::io(path));
-        if self.compression == CompressionMethod::None {
+        if !self.are_packed() {
             begin(offset.saturating_add(skipped_bytes))?;
-            return Ok(Box::new(file));
+            return Ok(Box::new(file.take(length.saturating_sub(skipped_bytes))));
         }
         begin(offset)?;
         let packed = file.take(length);
@@ -114,11 +132,8 @@ impl Strips {
             CompressionMethod::LZW => Box::new(Lzw::new(packed)),
             _ => Box::new(ZlibDecoder::new(packed)),
         };
-        let unpacked = io::copy(&mut rows.by_ref().take(skipped_bytes), &mut io::sink());
-        match unpacked.map_err(|error| io_reason(path, error))? {
-            found if found < skipped_bytes => Err(truncated(path)),
-            _ => Ok(rows),
-        }
+        pass(path, &mut rows, skipped_bytes)?;
+        Ok(rows)
     }
 
     /// Turns a row as it was stored into samples of this machine.
@@ -165,6 +180,14 @@ impl Strips {
     }
 }
 
+/// Goes past the next bytes of a strip.
+fn pass(path: &Path, rows: &mut dyn Read, bytes: u64) -> Result<()> {
+    match io::copy(&mut rows.take(bytes), &mut io::sink()).map_err(|error| io_reason(path, error))? {
+        found if found < bytes => Err(truncated(path)),
+        _ => Ok(()),
+    }
+}
+
 /// Undoes differences: each value is added to the one of the same sample in the texel before it.
 fn sum_up<T: Copy>(row: &mut [T], stride: usize, add: fn(T, T) -> T) {
     for index in stride..row.len() {
@@ -187,13 +210,19 @@ impl StripRows {
         Ok(Self { path: path.into(), strips, open: Vec::new(), row, next_row: 0 })
     }
 
+    /// Opens the strips of the next row.
+    fn open(&mut self) -> Result<()> {
+        self.open.clear();
+        let open = (0..self.strips.planes).map(|plane| self.strips.open(&self.path, plane, self.next_row));
+        self.open = open.collect::<Result<_>>()?;
+        Ok(())
+    }
+
     fn read_row(&mut self, mut samples: HeightsMut<'_>) -> Result<()> {
-        let strips = &self.strips;
-        if self.open.is_empty() || self.next_row.is_multiple_of(strips.rows_per_strip) {
-            self.open.clear();
-            let open = (0..strips.planes).map(|plane| strips.open(&self.path, plane, self.next_row));
-            self.open = open.collect::<Result<_>>()?;
+        if self.open.is_empty() || self.next_row.is_multiple_of(self.strips.rows_per_strip) {
+            self.open()?;
         }
+        let strips = &self.strips;
         for (plane, rows) in self.open.iter_mut().enumerate() {
             let row = &mut bytemuck::cast_slice_mut(&mut self.row)[..strips.row_bytes()];
             rows.read_exact(row).map_err(|error| io_reason(&self.path, error))?;
@@ -218,17 +247,29 @@ impl SampleRows for StripRows {
         (0..count).try_for_each(|row| self.read_row(part_mut(&mut rows, row * per_row..(row + 1) * per_row)))
     }
 
-    /// Within a packed strip, to go anywhere is to unpack it from its first row.
+    /// Within a packed strip, to go on is to unpack, and to go back is to begin with its first row again.
     fn seek(&mut self, row: usize) -> Result<()> {
-        if row != self.next_row {
-            self.open.clear();
+        let rows_per_strip = self.strips.rows_per_strip;
+        let begun = self.strips.are_packed() && !self.open.is_empty() && !self.next_row.is_multiple_of(rows_per_strip);
+        if begun && row >= self.next_row && row / rows_per_strip == self.next_row / rows_per_strip {
+            let bytes = (row - self.next_row) as u64 * self.strips.row_bytes() as u64;
+            self.open.iter_mut().try_for_each(|rows| pass(&self.path, rows, bytes))?;
             self.next_row = row;
+            return Ok(());
+        }
+        self.open.clear();
+        self.next_row = row;
+        // What is skipped piece by piece is unpacked so too.
+        if self.strips.are_packed() && !row.is_multiple_of(rows_per_strip) && row < self.layout().size.height() {
+            self.open()?;
         }
         Ok(())
     }
 
     fn last_row_is_near(&self) -> bool {
-        self.strips.compression == CompressionMethod::None || self.strips.strips_of_plane() > 1
+        let last = self.strips.strips_of_plane() - 1;
+        let is_short = self.strips.rows_of(last) * self.strips.row_bytes() <= NEAR_BYTES;
+        !self.strips.are_packed() || (last > 0 && is_short)
     }
 
     /// A row twice, what is read at once for each plane, deflate's window, and the table of strips.
