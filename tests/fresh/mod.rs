@@ -7,6 +7,7 @@ mod dry_run;
 mod kernel_version;
 mod library;
 mod many;
+mod options;
 mod record;
 #[cfg(unix)]
 mod resume;

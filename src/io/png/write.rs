@@ -16,7 +16,6 @@ use crate::io::Compression;
 use crate::io::replace::{Output, Replacement};
 use crate::io::sink::{FileSink, RowEncoder, cannot_hold};
 use crate::map::{CodesRef, Depth, Encoding, Size, TexelFormat};
-use crate::stream::RowSink;
 use png::chunk::IDAT;
 use png::{BitDepth, ColorType, Encoder, EncodingError, Writer};
 use std::io::{Seek, SeekFrom, Write};
@@ -68,7 +67,7 @@ pub(crate) fn create(
     size: Size,
     format: TexelFormat,
     compression: Compression,
-) -> Result<Box<dyn RowSink>> {
+) -> Result<Box<FileSink>> {
     let effort = match compression {
         Compression::Fast => Effort::Fast,
         Compression::Balanced => Effort::Balanced,
