@@ -114,7 +114,13 @@ impl Session<'_> {
             file.write(&report)?;
         }
         let exit = match (report.totals, &check) {
-            (totals, _) if is_told => if totals.failed > 0 { Exit::Failed } else { exit_of_search(&errors) },
+            (totals, _) if is_told => {
+                if totals.failed > 0 {
+                    Exit::Failed
+                } else {
+                    exit_of_search(&errors)
+                }
+            }
             (totals, _) if totals.stopped + totals.not_begun > 0 => Exit::Interrupted,
             (totals, _) if totals.failed > 0 => Exit::Failed,
             (_, Some(check)) => match check.run(reporting.quiet, monitor)? {

@@ -1,13 +1,15 @@
 //! Every byte that a bake writes belongs to the version of the kernels: who changes one, raises it.
 
-use std::path::Path;
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tempfile::TempDir;
-use texbake::batch::{Job, KERNEL_VERSION, run};
-use texbake::io::{RawLayout, ReadOptions, WriteOptions};
+use texbake::batch::{Job, KERNEL_VERSION, TileFolders, TileTemplate, run};
+use texbake::io::{BlockCompression, ColorSpace, Compression, RawLayout, ReadOptions, WriteOptions};
 use texbake::stream::Monitor;
 use texbake::{
-    BakeOptions, Baker, Channels, Convention, Depth, Edges, Encoding, Filter, Maps, NormalFormat, ParallaxFormat, Scale,
+    BakeOptions, Baker, Channels, Convention, Depth, Edges, Encoding, Filter, Maps, NormalFormat, ParallaxFormat,
+    Precision, RoughnessFormat, RoughnessMethod, RoughnessOptions, Scale,
 };
 
 /// The version that the table below is of.
@@ -59,52 +61,125 @@ const TABLE: &[(&str, &str)] = &[
     ("f32le_6_parallax.exr", "45336425005287c1cd53d05f4f60d9f2"),
 ];
 
-const WIDTH: usize = 37;
-const HEIGHT: usize = 23;
+/// Sides without a factor in common, and those that can be reduced.
+const ODD: [usize; 2] = [37, 23];
+const EVEN: [usize; 2] = [36, 24];
 
 /// Bumps of 16 bits: each bit of a height is used.
-fn height(index: usize) -> u16 {
-    let (x, y) = (index % WIDTH, index / WIDTH);
+fn height(width: usize, index: usize) -> u16 {
+    let (x, y) = (index % width, index / width);
     (x * x * 211 + y * 7919 + x * y * 13) as u16
 }
 
-/// A height map without a header, and its layout.
-fn input(folder: &Path, kind: &str) -> (std::path::PathBuf, RawLayout) {
-    let heights = (0..WIDTH * HEIGHT).map(height);
-    let bytes: Vec<u8> = match kind {
-        "u8" => heights.map(|height| (height >> 8) as u8).collect(),
-        "u16le" => heights.flat_map(u16::to_le_bytes).collect(),
-        _ => heights.flat_map(|height| (f32::from(height) / 65536.0).to_le_bytes()).collect(),
-    };
-    let path = folder.join(format!("{kind}.raw"));
-    std::fs::write(&path, bytes).unwrap();
-    (path, format!("{WIDTH}x{HEIGHT}:{kind}").parse().unwrap())
+/// What the heights are stored as.
+const KINDS: [&str; 3] = ["u8", "u16le", "f32le"];
+
+/// The tile to the right of each map, if anybody asks.
+fn tiles() -> TileTemplate {
+    "{x}_{y}.raw".parse().unwrap()
 }
 
-/// Slopes and the formats of the maps, with the extension of the files: each at least once.
-fn cases() -> Vec<(&'static str, BakeOptions)> {
-    let normal = |encoding, depth, channels, convention| NormalFormat { encoding, depth, channels, convention };
-    let parallax = |encoding, depth| ParallaxFormat { encoding, depth };
-    let options = |scale: &str, filter: Filter, edges: &str, normal, parallax| BakeOptions {
-        scale: Scale::texels(scale.parse::<texbake::Rational>().unwrap()),
-        filter,
-        edges: edges.parse::<Edges>().unwrap(),
-        normal: Some(normal),
-        parallax: Some(parallax),
-        ..BakeOptions::default()
-    };
+/// A height map without a header and the tile beside it, and their layout.
+fn input(folder: &Path, kind: &str, [width, height]: [usize; 2]) -> (PathBuf, RawLayout) {
+    let layout = format!("{width}x{height}:{kind}");
+    let folder = folder.join(layout.replace(':', "_"));
+    std::fs::create_dir_all(&folder).unwrap();
+    for tile in 0..2 {
+        let heights = (0..width * height).map(|index| self::height(width, index + 1000 * tile));
+        let bytes: Vec<u8> = match kind {
+            "u8" => heights.map(|height| (height >> 8) as u8).collect(),
+            "u16le" => heights.flat_map(u16::to_le_bytes).collect(),
+            _ => heights.flat_map(|height| (f32::from(height) / 65536.0).to_le_bytes()).collect(),
+        };
+        std::fs::write(folder.join(format!("{tile}_0.raw")), bytes).unwrap();
+    }
+    (folder.join("0_0.raw"), layout.parse().unwrap())
+}
+
+/// A bake and the format of its files.
+struct Case {
+    extension: &'static str,
+    kinds: &'static [&'static str],
+    size: [usize; 2],
+    read: ReadOptions,
+    options: BakeOptions,
+    write: WriteOptions,
+    has_neighbours: bool,
+}
+
+/// Slopes, formats of maps and files, and ways to get there: each at least once.
+fn cases() -> Vec<Case> {
+    use BlockCompression::{Bc5, Bc7};
     use Channels::{Xy, Xyz};
     use Convention::{Dx, Gl};
     use Depth::{Bits8, Bits16, Float16, Float32};
     use Encoding::{Biased, Float, Snorm, Unorm};
+    let normal = |encoding, depth, channels, convention| NormalFormat { encoding, depth, channels, convention };
+    let parallax = |encoding, depth| ParallaxFormat { encoding, depth };
+    let case = |extension, scale: &str, filter: Filter, edges: &str, normal, parallax| Case {
+        extension,
+        kinds: &KINDS,
+        size: ODD,
+        read: ReadOptions::default(),
+        options: BakeOptions {
+            scale: Scale::texels(scale.parse::<texbake::Rational>().unwrap()),
+            filter,
+            edges: edges.parse::<Edges>().unwrap(),
+            normal: Some(normal),
+            parallax: Some(parallax),
+            ..BakeOptions::default()
+        },
+        write: WriteOptions::default(),
+        has_neighbours: false,
+    };
+    let plain =
+        |extension, parallax| case(extension, "24", Filter::Central, "wrap", normal(Unorm, Bits8, Xyz, Gl), parallax);
+    let png = || plain("png", parallax(Biased, Bits8));
+    let packed = |compression| Case { write: WriteOptions { compression, ..WriteOptions::default() }, ..png() };
+    let texture = |mips, blocks, case: Case| Case { write: WriteOptions { mips, blocks, ..case.write }, ..case };
+    let rough = |method, depth, case: Case| {
+        let roughness = RoughnessOptions { method, base: "1/4".parse().unwrap(), format: RoughnessFormat { depth } };
+        Case { options: BakeOptions { roughness: Some(roughness), ..case.options }, ..case }
+    };
+    let fast = |case: Case| Case { options: BakeOptions { precision: Precision::Fast, ..case.options }, ..case };
+    let words = |extension, filter| {
+        case(extension, "7/3", filter, "mirror", normal(Unorm, Bits16, Xy, Dx), parallax(Unorm, Bits16))
+    };
+    let floats = |extension| {
+        case(extension, "3", Filter::Central, "wrap", normal(Float, Float16, Xyz, Gl), parallax(Float, Float32))
+    };
+    let reduced = ReadOptions { shrink: NonZeroU32::new(2).unwrap(), ..ReadOptions::default() };
+    let colours = ReadOptions { color_space: ColorSpace::Srgb, ..ReadOptions::default() };
+    let tile = |filter, edges| Case {
+        has_neighbours: true,
+        ..case("png", "24", filter, edges, normal(Unorm, Bits8, Xyz, Gl), parallax(Biased, Bits8))
+    };
     vec![
-        ("png", options("24", Filter::Central, "wrap", normal(Unorm, Bits8, Xyz, Gl), parallax(Biased, Bits8))),
-        ("png", options("7/3", Filter::Sobel, "clamp", normal(Biased, Bits16, Xy, Dx), parallax(Unorm, Bits16))),
-        ("tif", options("-0.35", Filter::Scharr, "mirror", normal(Snorm, Bits8, Xyz, Gl), parallax(Snorm, Bits8))),
-        ("tif", options("100", Filter::Prewitt, "wrap,clamp", normal(Unorm, Bits16, Xy, Gl), parallax(Snorm, Bits16))),
-        ("tif", options("3", Filter::Central, "wrap", normal(Float, Float32, Xyz, Dx), parallax(Float, Float32))),
-        ("exr", options("24", Filter::Sobel, "wrap", normal(Float, Float32, Xyz, Gl), parallax(Float, Float32))),
-        ("exr", options("24", Filter::Central, "clamp", normal(Float, Float16, Xy, Gl), parallax(Float, Float16))),
+        png(),
+        case("png", "7/3", Filter::Sobel, "clamp", normal(Biased, Bits16, Xy, Dx), parallax(Unorm, Bits16)),
+        case("tif", "-0.35", Filter::Scharr, "mirror", normal(Snorm, Bits8, Xyz, Gl), parallax(Snorm, Bits8)),
+        case("tif", "100", Filter::Prewitt, "wrap,clamp", normal(Unorm, Bits16, Xy, Gl), parallax(Snorm, Bits16)),
+        case("tif", "3", Filter::Central, "wrap", normal(Float, Float32, Xyz, Dx), parallax(Float, Float32)),
+        case("exr", "24", Filter::Sobel, "wrap", normal(Float, Float32, Xyz, Gl), parallax(Float, Float32)),
+        case("exr", "24", Filter::Central, "clamp", normal(Float, Float16, Xy, Gl), parallax(Float, Float16)),
+        packed(Compression::Balanced),
+        packed(Compression::Small),
+        plain("ktx2", parallax(Snorm, Bits8)),
+        words("dds", Filter::Scharr),
+        floats("ktx2"),
+        texture(true, None, floats("dds")),
+        rough(RoughnessMethod::Lean, Bits8, texture(true, None, plain("ktx2", parallax(Snorm, Bits8)))),
+        rough(RoughnessMethod::Toksvig, Bits16, texture(true, None, words("dds", Filter::Sobel))),
+        texture(false, Some(Bc5), plain("dds", parallax(Snorm, Bits8))),
+        texture(true, Some(Bc5), plain("ktx2", parallax(Unorm, Bits8))),
+        rough(RoughnessMethod::Lean, Bits8, texture(true, Some(Bc7), plain("dds", parallax(Unorm, Bits8)))),
+        texture(false, Some(Bc7), plain("ktx2", parallax(Unorm, Bits8))),
+        fast(words("png", Filter::Central)),
+        fast(floats("exr")),
+        Case { size: EVEN, read: reduced, ..png() },
+        Case { kinds: &["u8", "u16le"], read: colours, ..words("png", Filter::Central) },
+        tile(Filter::Central, "clamp"),
+        tile(Filter::Sobel, "wrap,mirror"),
     ]
 }
 
@@ -113,24 +188,30 @@ fn a_changed_byte_is_a_new_version() {
     let folder = TempDir::new().unwrap();
     let mut jobs = Vec::new();
     let baker = Arc::new(Baker::cpu());
-    for kind in ["u8", "u16le", "f32le"] {
-        let (input, raw) = input(folder.path(), kind);
-        for (number, (extension, options)) in cases().into_iter().enumerate() {
+    for kind in KINDS {
+        let cases = cases().into_iter().enumerate().filter(|(_, case)| case.kinds.contains(&kind));
+        for (number, Case { extension, size, read, options, write, has_neighbours, .. }) in cases {
+            let (input, raw) = input(folder.path(), kind, size);
             let output = |map: &str| Some(folder.path().join(format!("{kind}_{number}_{map}.{extension}")));
+            let around = || TileFolders::default().around(&input, &tiles(), 0, &options).unwrap();
             jobs.push(Job {
-                input: input.clone(),
-                outputs: Maps { normal: output("normal"), parallax: output("parallax"), roughness: None },
+                outputs: Maps {
+                    normal: output("normal"),
+                    parallax: output("parallax"),
+                    roughness: options.roughness.and_then(|_| output("roughness")),
+                },
                 normals: None,
-                neighbours: None,
-                read: ReadOptions { raw: Some(raw), ..ReadOptions::default() },
+                neighbours: has_neighbours.then(around),
+                read: ReadOptions { raw: Some(raw), ..read },
+                input,
                 options,
-                write: WriteOptions::default(),
+                write,
                 baker: baker.clone(),
             });
         }
     }
-    for outcome in run(&jobs, 2, &Monitor::default(), &|_| ()) {
-        outcome.result.unwrap();
+    for (job, outcome) in jobs.iter().zip(run(&jobs, 2, &Monitor::default(), &|_| ())) {
+        outcome.result.unwrap_or_else(|error| panic!("{:?}: {error}", job.outputs));
     }
     let outputs = jobs.iter().flat_map(|job| job.outputs.iter());
     let found: Vec<(String, String)> = outputs

@@ -62,12 +62,7 @@ struct RowLayout {
 
 /// Creates a PNG with 8 or 16 bits: grey for one channel, else RGB; xy maps leave blue 0, since PNG's only two-channel
 /// type means transparency.
-pub(crate) fn create(
-    path: &Path,
-    size: Size,
-    format: TexelFormat,
-    compression: Compression,
-) -> Result<Box<FileSink>> {
+pub(crate) fn create(path: &Path, size: Size, format: TexelFormat, compression: Compression) -> Result<Box<FileSink>> {
     let effort = match compression {
         Compression::Fast => Effort::Fast,
         Compression::Balanced => Effort::Balanced,
