@@ -20,6 +20,12 @@ pub(crate) trait Backend: Send + Sync {
     /// What runs there: `2 threads, avx512`, or the adapter.
     fn device(&self) -> String;
 
+    /// Devices of one such name give the same bytes in [`Precision::Fast`](crate::Precision::Fast).
+    #[cfg(feature = "cli")]
+    fn fast_device(&self) -> String {
+        name(self.kind(), &self.device())
+    }
+
     /// Threads for what an operation does on the host; `None`: those that all of the process share.
     fn host_threads(&self) -> Option<&rayon::ThreadPool> {
         None

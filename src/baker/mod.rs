@@ -149,6 +149,14 @@ impl Baker {
         crate::backend::name(self.backend.kind(), &self.backend.device())
     }
 
+    /// What decides over the bytes of [`Precision::Fast`](crate::Precision::Fast): where a job ran, or else would run.
+    #[cfg(feature = "cli")]
+    pub(crate) fn fast_device(&self, ran: Option<&Ran>) -> String {
+        let fell_back = ran.is_some_and(|ran| ran.fallback.is_some());
+        let fallback = self.fallback.as_ref().filter(|_| fell_back);
+        fallback.unwrap_or(&self.backend).fast_device()
+    }
+
     /// Why this backend was chosen.
     pub fn reason(&self) -> &str {
         &self.reason

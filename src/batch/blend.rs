@@ -76,7 +76,7 @@ impl BlendJob {
     pub fn run(&self, monitor: &Monitor, opened: &dyn Fn(Size)) -> BlendOutcome {
         let files = self.files();
         if let Some(refusal) = targets::refusals(std::slice::from_ref(&files)).into_iter().flatten().next() {
-            return BlendOutcome { outcome: Outcome::unopened(refusal), inputs: Default::default() };
+            return BlendOutcome { outcome: Outcome::unopened(refusal.error()), inputs: Default::default() };
         }
         let layers = [self.base.watch(Role::Base), self.detail.watch(Role::Detail)];
         let outcome = Outcome::of(&files, |warnings| {

@@ -1,16 +1,17 @@
 //! Files baked side by side.
 
+use super::fresh::Written;
 use super::heights::HeightWatch;
 use super::neighbours::Neighbours;
 use super::normals::NormalInput;
 use super::outcome::Outcome;
 use super::role::{Role, check_same_size};
-use super::targets::{self, Files};
+use super::targets::{self, Files, Refusal};
 use crate::baker::{Baked, Baker};
 use crate::error::{Error, Result};
 use crate::exact::Scale;
-use crate::io::{Cropped, ReadOptions, WriteOptions, create_normals_with, create_parallax_with, create_roughness_with};
-use crate::map::{Edge, Edges, Maps, Size};
+use crate::io::{Cropped, ReadOptions, WriteOptions, create_witnessed};
+use crate::map::{Edge, Edges, Maps, Size, TexelFormat};
 use crate::ops::bake::BakeOptions;
 use crate::stream::{HeightRows, Monitor, RowsOut};
 use std::io::ErrorKind;
@@ -65,25 +66,54 @@ pub enum Event<'a> {
 /// Each is a stream of its own: its file is read, baked and written at the same time. `watch` is called from many
 /// threads. The outcomes come back in the order of the jobs.
 pub fn run(jobs: &[Job], at_once: usize, monitor: &Monitor, watch: &(dyn Fn(Event<'_>) + Sync)) -> Vec<Outcome> {
-    let next = AtomicUsize::new(0);
-    let was_there: Vec<bool> = jobs.iter().map(|job| job.input.exists()).collect();
-    let unopened = |error| OnceLock::from(Outcome::unopened(error));
     let refusals = targets::refusals(&Job::all_files(jobs)).into_iter();
+    let queue = jobs.iter().zip(refusals).map(|(job, refusal)| Queued { refusal, ..Queued::new(job) });
+    run_queue(&queue.collect::<Vec<_>>(), at_once, monitor, watch)
+}
+
+/// A job that waits for its turn.
+pub(super) struct Queued<'a> {
+    pub job: &'a Job,
+    /// Why it must not run.
+    pub refusal: Option<Refusal>,
+    /// What it wrote, if somebody wants to know.
+    pub written: Option<Written>,
+    /// Whether its input was there when the run began.
+    pub was_there: bool,
+}
+
+impl<'a> Queued<'a> {
+    pub fn new(job: &'a Job) -> Self {
+        Self { job, refusal: None, written: None, was_there: job.input.exists() }
+    }
+
+    fn run(&self, monitor: &Monitor, opened: &dyn Fn(Size)) -> Outcome {
+        let outcome = self.job.run(self.written.as_ref(), monitor, opened);
+        if self.was_there { say_if_it_went(&self.job.input, outcome) } else { outcome }
+    }
+}
+
+/// Runs jobs as [`run`] does, whose places are those in the queue.
+pub(super) fn run_queue(
+    queue: &[Queued<'_>],
+    at_once: usize,
+    monitor: &Monitor,
+    watch: &(dyn Fn(Event<'_>) + Sync),
+) -> Vec<Outcome> {
+    let next = AtomicUsize::new(0);
+    let refused = |refusal: &Refusal| OnceLock::from(Outcome::unopened(refusal.error()));
     let outcomes: Vec<OnceLock<Outcome>> =
-        refusals.map(|refusal| refusal.map_or_else(OnceLock::new, unopened)).collect();
+        queue.iter().map(|queued| queued.refusal.as_ref().map_or_else(OnceLock::new, refused)).collect();
     let work = || {
         while !monitor.is_cancelled() {
             let index = next.fetch_add(1, Relaxed);
-            let Some(job) = jobs.get(index) else { break };
-            let run = || {
-                let outcome = job.run(monitor, &|size| watch(Event::Opened { job: index, size }));
-                if was_there[index] { say_if_it_went(&job.input, outcome) } else { outcome }
-            };
+            let Some(queued) = queue.get(index) else { break };
+            let run = || queued.run(monitor, &|size| watch(Event::Opened { job: index, size }));
             watch(Event::Ended { job: index, outcome: outcomes[index].get_or_init(run) });
         }
     };
     std::thread::scope(|scope| {
-        for _ in 1..at_once.min(jobs.len()) {
+        for _ in 1..at_once.min(queue.len()) {
             scope.spawn(work);
         }
         work();
@@ -126,14 +156,22 @@ impl Job {
         outcome.failure(self.input.display())
     }
 
-    fn run(&self, monitor: &Monitor, opened: &dyn Fn(Size)) -> Outcome {
+    /// `written` is told what becomes of the outputs.
+    fn run(&self, written: Option<&Written>, monitor: &Monitor, opened: &dyn Fn(Size)) -> Outcome {
+        let create = |size| self.create(size, written);
         Outcome::of(&self.files(), |warnings| match &self.normals {
-            None => self.bake(monitor, opened, warnings),
-            Some(normals) => self.bake_with(normals, monitor, opened, warnings),
+            None => self.bake(&create, monitor, opened, warnings),
+            Some(normals) => self.bake_with(normals, &create, monitor, opened, warnings),
         })
     }
 
-    fn bake(&self, monitor: &Monitor, opened: &dyn Fn(Size), warnings: &mut Vec<String>) -> Result<Baked> {
+    fn bake(
+        &self,
+        create: Create<'_>,
+        monitor: &Monitor,
+        opened: &dyn Fn(Size),
+        warnings: &mut Vec<String>,
+    ) -> Result<Baked> {
         let heights = HeightWatch::new(&self.input, &self.read);
         let open = || {
             let rows = heights.open(self.options.parallax.is_some())?;
@@ -142,8 +180,8 @@ impl Job {
         };
         let options = BakeOptions { scale: self.scale()?, ..self.options };
         let baked = match &self.neighbours {
-            None => self.baker.bake_rows(&open, &|size| self.create(size), &options, monitor),
-            Some(neighbours) => self.bake_tile(neighbours, &open, &options, monitor),
+            None => self.baker.bake_rows(&open, create, &options, monitor),
+            Some(neighbours) => self.bake_tile(neighbours, &open, create, &options, monitor),
         };
         warnings.extend(heights.warnings(baked.is_ok()));
         warnings.extend(baked.as_ref().ok().and_then(inexact_scale));
@@ -155,6 +193,7 @@ impl Job {
         &self,
         neighbours: &Neighbours,
         open: &dyn Fn() -> Result<HeightRows>,
+        create: Create<'_>,
         options: &BakeOptions,
         monitor: &Monitor,
     ) -> Result<Baked> {
@@ -179,19 +218,20 @@ impl Job {
             BakeOptions { scale: options.scale.over(size, whole)?, edges: Edges::both(Edge::Clamp), ..*options };
         let open = || Ok(Box::new(neighbours.around(&self.input, open()?, &self.read, monitor)?) as HeightRows);
         let cropped = |(sink, format)| Box::new(Cropped::new(sink, size, format)) as RowsOut;
-        let create = |_| {
-            let Maps { normal, parallax, .. } = self.create(size)?;
+        let create_cropped = |_| {
+            let Maps { normal, parallax, .. } = create(size)?;
             let normal = normal.zip(options.normal.map(|format| format.texel())).map(cropped);
             let parallax = parallax.zip(options.parallax.map(|format| format.texel())).map(cropped);
             Ok(Maps { normal, parallax, roughness: None })
         };
-        let baked = self.baker.bake_rows(&open, &create, &options, monitor)?;
+        let baked = self.baker.bake_rows(&open, &create_cropped, &options, monitor)?;
         Ok(Baked { size, ..baked })
     }
 
     fn bake_with(
         &self,
         normals: &NormalInput,
+        create: Create<'_>,
         monitor: &Monitor,
         opened: &dyn Fn(Size),
         warnings: &mut Vec<String>,
@@ -219,7 +259,7 @@ impl Job {
         let create = |size| {
             // A scale out of range is told before there is a file.
             self.scale()?.resolve(size)?;
-            let Maps { parallax, .. } = self.create(size)?;
+            let Maps { parallax, .. } = create(size)?;
             parallax.ok_or_else(|| Error::parameter("maps", "none", "parallax"))
         };
         let ran = self.baker.parallax_with_normals_rows(&open, &create, format, self.options.precision, monitor);
@@ -237,24 +277,25 @@ impl Job {
         self.options.scale.shrunk(self.read.shrink)
     }
 
-    /// A sink for each output.
-    fn create(&self, size: Size) -> Result<Maps<RowsOut>> {
+    /// A sink for each output, of whose file `written` is told.
+    fn create(&self, size: Size, written: Option<&Written>) -> Result<Maps<RowsOut>> {
         self.outputs.iter().try_for_each(|path| create_folder_of(path))?;
-        let Maps { normal, parallax, roughness } = &self.outputs;
-        let roughness = roughness.as_ref().zip(self.options.roughness);
-        let normal = normal.as_ref().zip(self.options.normal);
-        let parallax = parallax.as_ref().zip(self.options.parallax);
+        let create = |path: &Option<PathBuf>, format: Option<TexelFormat>| {
+            let Some((path, format)) = path.as_ref().zip(format) else { return Ok(None) };
+            let witness = written.map(|written| written.witness(path));
+            create_witnessed(path, size, format, &self.write, witness).map(Some)
+        };
+        let BakeOptions { normal, parallax, roughness, .. } = &self.options;
         Ok(Maps {
-            normal: normal.map(|(path, format)| create_normals_with(path, size, format, &self.write)).transpose()?,
-            parallax: parallax
-                .map(|(path, format)| create_parallax_with(path, size, format, &self.write))
-                .transpose()?,
-            roughness: roughness
-                .map(|(path, options)| create_roughness_with(path, size, options.format, &self.write))
-                .transpose()?,
+            normal: create(&self.outputs.normal, normal.map(|format| format.texel()))?,
+            parallax: create(&self.outputs.parallax, parallax.map(|format| format.texel()))?,
+            roughness: create(&self.outputs.roughness, roughness.map(|options| options.format.texel()))?,
         })
     }
 }
+
+/// Makes the sinks of a job's outputs.
+type Create<'a> = &'a dyn Fn(Size) -> Result<Maps<RowsOut>>;
 
 /// Makes the folders above a file.
 pub(super) fn create_folder_of(file: &Path) -> Result<()> {
@@ -286,7 +327,7 @@ mod tests {
             write: WriteOptions::default(),
             baker: Arc::new(Baker::reference()),
         };
-        let failure = job.failure(&job.run(&Monitor::default(), &|_| ())).unwrap();
+        let failure = job.failure(&job.run(None, &Monitor::default(), &|_| ())).unwrap();
         assert_eq!(failure, "h.png: maps is other maps: it must be parallax alone, where a normal map is given");
     }
 }

@@ -104,7 +104,7 @@ impl TangentJob {
             return Outcome::unopened(a_folder(&self.input));
         }
         if let Some(refusal) = targets::refusals(std::slice::from_ref(&files)).into_iter().flatten().next() {
-            return Outcome::unopened(refusal);
+            return Outcome::unopened(refusal.error());
         }
         let mut outcome = Outcome::of(&files, |warnings| {
             Model::check_output(&self.output)?;

@@ -13,12 +13,27 @@ pub struct Files<'a> {
     pub outputs: Vec<&'a Path>,
 }
 
+/// Why a job must not run.
+#[derive(Debug, Clone)]
+pub(super) struct Refusal {
+    file: PathBuf,
+    reason: String,
+    remedy: &'static str,
+}
+
+impl Refusal {
+    /// The same as an error.
+    pub fn error(&self) -> Error {
+        Error::file(&self.file, &self.reason, self.remedy)
+    }
+}
+
 const REMEDY: &str = "choose another output";
 
 /// Why each job must not run, or `None`: an output of it is an input, or another output too.
 ///
 /// All jobs of a clash are refused, so that their order decides nothing.
-pub(super) fn refusals(jobs: &[Files<'_>]) -> Vec<Option<Error>> {
+pub(super) fn refusals(jobs: &[Files<'_>]) -> Vec<Option<Refusal>> {
     let inputs = inputs(jobs);
     let places: Vec<Vec<PathBuf>> =
         jobs.iter().map(|job| job.outputs.iter().map(|path| place(path)).collect()).collect();
@@ -26,18 +41,21 @@ pub(super) fn refusals(jobs: &[Files<'_>]) -> Vec<Option<Error>> {
     for (job, places) in jobs.iter().zip(&places) {
         places.iter().for_each(|place| of_place.entry(place).or_default().push(job));
     }
+    let refused = |file: &Path, reason, remedy| Some(Refusal { file: file.into(), reason, remedy });
     let refusal = |job: &Files, output: &Path, place: &PathBuf| {
         let name = job.inputs[0].display();
         if let Some(input) = identity(place).and_then(|output| inputs.get(&output)) {
-            return Some(Error::file(*input, format!("the output of {name} would overwrite this input"), REMEDY));
+            return refused(input, format!("the output of {name} would overwrite this input"), REMEDY);
         }
         let there = &of_place[place.as_path()];
         if let Some(other) = there.iter().find(|other| !std::ptr::eq(**other, job)) {
             let reason = format!("both {name} and {} would be baked into it", other.inputs[0].display());
-            return Some(Error::file(output, reason, "bake them into different folders, or change --name"));
+            return refused(output, reason, "bake them into different folders, or change --name");
         }
-        let is_alone = there.len() == 1;
-        (!is_alone).then(|| Error::file(output, format!("it would take two maps of {name}"), REMEDY))
+        match there.len() {
+            1 => None,
+            _ => refused(output, format!("it would take two maps of {name}"), REMEDY),
+        }
     };
     let first = |(job, places): (&Files, &Vec<PathBuf>)| {
         job.outputs.iter().zip(places).find_map(|(output, place)| refusal(job, output, place))

@@ -103,8 +103,9 @@ impl Session<'_> {
             ..Report::new(&jobs, &outcomes, time, &errors, settings, arguments.iterations)
         };
         let summary = summary(&report, &jobs, &outcomes);
+        let is_told = arguments.dry_run && !monitor.is_cancelled();
         if !reporting.quiet && is_first {
-            match arguments.dry_run {
+            match is_told {
                 true => put(plan_table(&jobs, &plan.files().collect::<Vec<_>>())),
                 false => put(format_args!("{}\n{summary}", file_table(&jobs, &outcomes, &report.left_out))),
             }
@@ -113,7 +114,13 @@ impl Session<'_> {
             file.write(&report)?;
         }
         let exit = match (report.totals, &check) {
-            _ if arguments.dry_run && !monitor.is_cancelled() => exit_of_search(&errors),
+            (totals, _) if is_told => {
+                if totals.failed > 0 {
+                    Exit::Failed
+                } else {
+                    exit_of_search(&errors)
+                }
+            }
             (totals, _) if totals.stopped + totals.not_begun > 0 => Exit::Interrupted,
             (totals, _) if totals.failed > 0 => Exit::Failed,
             (_, Some(check)) => match check.run(reporting.quiet, monitor)? {

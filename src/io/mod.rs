@@ -49,6 +49,8 @@ pub use gltf::{LeftOut, Model, ModelFile, ModelFiles, ModelReadOptions, ModelRep
 pub(crate) use halo::{Halo, HaloRows, Reach, TileRow};
 pub use parallax::ParallaxReadOptions;
 pub use raw::{RawKind, RawLayout};
+#[cfg(feature = "cli")]
+pub(crate) use sink::Witness;
 pub use texture::BlockCompression;
 #[cfg(feature = "cli")]
 pub(crate) use write::is_compressed;
@@ -56,6 +58,8 @@ pub use write::{
     Compression, WriteOptions, check_normal_format, check_normals_with, check_parallax_format, check_parallax_with,
     check_roughness, create_normals, create_normals_with, create_parallax, create_parallax_with, create_roughness_with,
 };
+#[cfg(feature = "cli")]
+pub(crate) use write::{create_witnessed, is_compressed};
 
 use crate::error::Result;
 use crate::map::{Channels, Convention, Encoding, HeightMap, NormalMap, ParallaxMap};

@@ -8,7 +8,7 @@
 use super::temporary;
 use crate::error::{Error, Result};
 use std::fs::{self, File};
-use std::io::{self, ErrorKind, Seek, SeekFrom, Write};
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 use tempfile::NamedTempFile;
@@ -89,6 +89,12 @@ impl Replacement {
     pub fn check(&self) -> Result<()> {
         let Some((kind, reason)) = self.failure.get() else { return Ok(()) };
         Err(Error::io(&self.target)(io::Error::new(*kind, reason.as_str())))
+    }
+
+    /// Lets somebody read the bytes that were written.
+    pub fn show(&self, read: impl FnOnce(&mut dyn Read) -> io::Result<()>) -> Result<()> {
+        let mut file = self.temporary.as_file();
+        file.rewind().and_then(|()| read(&mut file)).map_err(Error::io(&self.target))
     }
 
     /// Brings the bytes to the disk.

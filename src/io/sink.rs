@@ -4,6 +4,7 @@ use super::replace::Replacement;
 use crate::error::{Error, Result};
 use crate::map::{CodesRef, Depth, Size, TexelFormat};
 use crate::stream::{LevelSink, RowSink};
+use std::io::{self, Read};
 use std::path::Path;
 
 /// Writes one file format.
@@ -26,12 +27,17 @@ pub(super) trait RowEncoder: Send {
     fn finish(self: Box<Self>) -> Result<()>;
 }
 
+/// Reads a file once it is complete and before it has its name, so that nobody else has written to it.
+pub(crate) type Witness = Box<dyn FnOnce(&mut dyn Read) -> io::Result<()> + Send>;
+
 /// An encoder, the file that it fills, and the rows that are still to come.
-pub(super) struct FileSink {
+pub(crate) struct FileSink {
     /// `None` once the file is complete.
     encoder: Option<Box<dyn RowEncoder>>,
     replacement: Replacement,
     expected: ExpectedRows,
+    /// `None` if nobody asks, or once it was told.
+    pub(super) witness: Option<Witness>,
 }
 
 /// The rows of a map, or of a mip level, that are still to come: from the top, but that row 0 may come last.
@@ -52,10 +58,10 @@ impl FileSink {
         replacement: Replacement,
         size: Size,
         format: TexelFormat,
-    ) -> Box<dyn RowSink> {
+    ) -> Box<Self> {
         let expected = ExpectedRows::new(size.width(), size.height(), format);
         let encoder: Option<Box<dyn RowEncoder>> = Some(Box::new(encoder));
-        Box::new(Self { encoder, replacement, expected })
+        Box::new(Self { encoder, replacement, expected, witness: None })
     }
 }
 
@@ -128,6 +134,7 @@ impl RowSink for FileSink {
         let finished = self.encoder.take().map_or(Ok(()), |encoder| encoder.finish());
         self.replacement.check()?;
         finished?;
+        self.witness.take().map_or(Ok(()), |witness| self.replacement.show(witness))?;
         self.replacement.sync()
     }
 
@@ -181,7 +188,7 @@ mod tests {
         }
     }
 
-    fn sink(folder: &Path, waits: bool) -> Box<dyn RowSink> {
+    fn sink(folder: &Path, waits: bool) -> Box<FileSink> {
         let replacement = Replacement::create(&folder.join("n.png")).unwrap();
         let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
         let encoder = Deaf { output: replacement.output_into(full), waits };

@@ -1,6 +1,9 @@
 //! How maps are written.
 
 use super::format::OutputFormat;
+use super::sink::FileSink;
+#[cfg(feature = "cli")]
+use super::sink::Witness;
 use super::texture::BlockCompression;
 use super::{exr, png, texture, tiff};
 use crate::error::{Error, Result};
@@ -64,7 +67,7 @@ pub fn create_normals(path: &Path, size: Size, format: NormalFormat) -> Result<R
 /// [`crate::Error::Parameter`] if the format cannot hold `format`, or not as `options` say; [`crate::Error::File`] for
 /// an unknown extension, a name that cannot be replaced, or a DDS above 4 GiB; [`crate::Error::Io`].
 pub fn create_normals_with(path: &Path, size: Size, format: NormalFormat, options: &WriteOptions) -> Result<RowsOut> {
-    create_codes(path, size, format.texel(), options)
+    Ok(create_codes(path, size, format.texel(), options)?)
 }
 
 /// Creates a parallax map file as [`create_parallax_with`] does, with the default [`WriteOptions`].
@@ -95,7 +98,7 @@ pub fn create_parallax_with(
     format: ParallaxFormat,
     options: &WriteOptions,
 ) -> Result<RowsOut> {
-    create_codes(path, size, format.texel(), options)
+    Ok(create_codes(path, size, format.texel(), options)?)
 }
 
 /// Creates a roughness map file: one unorm component, as [`create_parallax_with`] has it, of one level or of all.
@@ -108,7 +111,7 @@ pub fn create_roughness_with(
     format: RoughnessFormat,
     options: &WriteOptions,
 ) -> Result<RowsOut> {
-    create_codes(path, size, format.texel(), options)
+    Ok(create_codes(path, size, format.texel(), options)?)
 }
 
 /// Fails if a file called `path` cannot hold a roughness map of mip levels; nothing is looked up or created.
@@ -197,7 +200,21 @@ fn check_plain(path: &Path, options: &WriteOptions) -> Result<()> {
     Ok(())
 }
 
-fn create_codes(path: &Path, size: Size, format: TexelFormat, options: &WriteOptions) -> Result<RowsOut> {
+/// Creates a file of codes; `witness` reads it before it has its name.
+#[cfg(feature = "cli")]
+pub(crate) fn create_witnessed(
+    path: &Path,
+    size: Size,
+    format: TexelFormat,
+    options: &WriteOptions,
+    witness: Option<Witness>,
+) -> Result<RowsOut> {
+    let mut sink = create_codes(path, size, format, options)?;
+    sink.witness = witness;
+    Ok(sink)
+}
+
+fn create_codes(path: &Path, size: Size, format: TexelFormat, options: &WriteOptions) -> Result<Box<FileSink>> {
     match check_codes(path, format, options)? {
         OutputFormat::Png => png::create(path, size, format, options.compression),
         OutputFormat::Tiff => tiff::create(path, size, format),

@@ -167,7 +167,7 @@ fn what_has_no_levels_is_told_before_anything_is_baked() {
 #[test]
 fn tiles_and_given_normals_have_no_levels() {
     let folder = Folder::new();
-    ["t_0_0_height.png", "t_1_0_height.png"].map(|name| folder.grey8(&format!("tex/{name}"), 8, 8, bumps8));
+    let _ = ["t_0_0_height.png", "t_1_0_height.png"].map(|name| folder.grey8(&format!("tex/{name}"), 8, 8, bumps8));
     let told = "mips is on: it must be left out where a map has neighbours";
     let mips = ["--mips", "--neighbours", "t_{x}_{y}_height.png", "--backend", "cpu"];
     let run = folder.run(&[&["normal", "tex/t_0_0_height.png", "-o", "n.ktx2"], &mips[..]].concat()).ends(1);

@@ -66,22 +66,6 @@ fn an_option_bakes_again_what_it_is_for() {
     assert_eq!(baked(&folder, &["--max-bytes", "1G", "--iterations", "9", "--jobs", "1", "--backend", "cpu"]), [""; 0]);
     assert_eq!(baked(&folder, &["--scale", "24"]), ["a scale 8 -> 24", "c scale 8 -> 24"]);
     set("");
-    folder.run(&["bake", "tex", "--out", "out", "-q"]).ends(0);
-    for (option, value, reason) in [
-        ("--filter", "sobel", "filter central -> sobel"),
-        ("--convention", "dx", "convention gl -> dx"),
-        ("--channels", "xy", "channels xyz -> xy"),
-        ("--bits", "16", "bits 8 -> 16"),
-        ("--encoding", "biased", "encoding unorm -> biased"),
-        ("--compression", "small", "compression fast -> small"),
-        ("--channel", "r", "channel none -> r"),
-        ("--color-space", "srgb", "color-space linear -> srgb"),
-    ] {
-        let all = ["a", "b", "c"].map(|name| format!("{name} {reason}"));
-        assert_eq!(baked(&folder, &[option, value]), all);
-        assert_eq!(baked(&folder, &[option, value]), [""; 0], "{option}");
-        assert_eq!(baked(&folder, &[]).len(), 3, "and back");
-    }
     // The maps of a texture are baked in one pass.
     let both = ["--maps", "normal,parallax"];
     assert_eq!(baked(&folder, &both), ["a new", "b new", "c new"]);
@@ -97,6 +81,12 @@ fn a_device_counts_where_it_decides_over_bytes() {
     let bake = |precision, backend| baked(&folder, &["--precision", precision, "--backend", backend]).len();
     assert_eq!([bake("exact", "cpu"), bake("exact", "reference"), bake("exact", "cpu")], [3, 0, 0]);
     assert_eq!([bake("fast", "cpu"), bake("fast", "cpu"), bake("fast", "reference")], [3, 0, 3]);
+    assert_eq!(bake("fast", "cpu"), 3);
+    for threads in ["1", "2"] {
+        let fast = ["--precision", "fast", "--backend", "cpu", "--threads", threads];
+        assert_eq!(baked(&folder, &fast), [""; 0], "a byte depends on no number of threads");
+    }
+    assert_eq!(bake("fast", "reference"), 3);
     assert_eq!([bake("fast", "reference"), bake("exact", "reference")], [0, 3]);
 }
 
@@ -172,6 +162,35 @@ fn an_output_that_was_edited_or_deleted_is_noticed() {
     fs::remove_file(folder.path("out/b_parallax.png")).unwrap();
     assert_eq!(baked(&folder, &both), ["b out/b_parallax.png is missing"]);
     assert_eq!(baked(&folder, &both), [""; 0]);
+}
+
+#[test]
+fn a_roughness_map_is_an_output_as_others_are() {
+    let folder = textures();
+    let rough = ["--format", "dds", "--mips", "--maps", "normal,roughness"];
+    assert_eq!(baked(&folder, &rough), ["a new", "b new", "c new"]);
+    let first = contents(&folder);
+    let output = folder.path("out/a_roughness.dds");
+    let mut bytes = fs::read(&output).unwrap();
+    *bytes.last_mut().unwrap() ^= 1;
+    fs::write(&output, &bytes).unwrap();
+    fs::remove_file(folder.path("out/sub/c_roughness.dds")).unwrap();
+    let expected = ["a out/a_roughness.dds was edited", "c out/sub/c_roughness.dds is missing"];
+    assert_eq!(baked(&folder, &rough), expected);
+    assert_eq!(baked(&folder, &rough), [""; 0]);
+    assert!(contents(&folder) == first);
+}
+
+/// An output that cannot be read was not edited.
+#[test]
+fn what_cannot_be_read_is_told_as_such() {
+    let folder = textures();
+    assert_eq!(baked(&folder, &[]).len(), 3);
+    let output = folder.path("out/a_normal.png");
+    fs::remove_file(&output).unwrap();
+    fs::create_dir(&output).unwrap();
+    let results = results_of(&folder, &["--dry-run"], 0);
+    assert_eq!(results["a"], "not_begun: out/a_normal.png cannot be read: it is no file");
 }
 
 #[test]

@@ -92,7 +92,7 @@ fn a_report_is_written_if_it_is_asked_for() {
 fn clashes_are_told() {
     let folder = textures();
     fs::copy(folder.path("tex/a_height.png"), folder.path("tex/a_disp.png")).unwrap();
-    let run = folder.run(&["bake", "tex", "--out", "out", "--dry-run"]).ends(0);
+    let run = folder.run(&["bake", "tex", "--out", "out", "--dry-run"]).ends(1);
     let failing: Vec<&str> = run.stdout.lines().filter(|line| line.starts_with("fail tex/a_")).collect();
     assert!(failing.len() == 2 && failing.iter().all(|line| line.contains("would be baked into it")), "{}", run.stdout);
     assert!(run.stdout.ends_with("2 of 4 files would be baked, 2 would fail\n"), "{}", run.stdout);

@@ -1,20 +1,21 @@
 //! Every byte that a bake writes belongs to the version of the kernels: who changes one, raises it.
 
-use std::path::Path;
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tempfile::TempDir;
-use texbake::batch::{Job, KERNEL_VERSION, run};
-use texbake::io::{BlockCompression, Compression, RawLayout, ReadOptions, WriteOptions};
+use texbake::batch::{Job, KERNEL_VERSION, TileFolders, TileTemplate, run};
+use texbake::io::{BlockCompression, ColorSpace, Compression, RawLayout, ReadOptions, WriteOptions};
 use texbake::stream::Monitor;
 use texbake::{
     BakeOptions, Baker, Channels, Convention, Depth, Edges, Encoding, Filter, Maps, NormalFormat, ParallaxFormat,
-    RoughnessFormat, RoughnessMethod, RoughnessOptions, Scale,
+    Precision, RoughnessFormat, RoughnessMethod, RoughnessOptions, Scale,
 };
 
 /// The version that the table below is of.
 const VERSION: u32 = 1;
 
-/// The BLAKE3 hash of each output.
+/// The BLAKE3 hash of each output, as a whole file.
 const TABLE: &[(&str, &str)] = &[
     ("u8_0_normal.png", "e672d5ecbc92f0a84a542eb9a85cf1b0"),
     ("u8_0_parallax.png", "53cb97361954e3662ffd7563289d4d27"),
@@ -60,100 +61,126 @@ const TABLE: &[(&str, &str)] = &[
     ("f32le_6_parallax.exr", "45336425005287c1cd53d05f4f60d9f2"),
 ];
 
-const WIDTH: usize = 37;
-const HEIGHT: usize = 23;
+/// Sides without a factor in common, and those that can be reduced.
+const ODD: [usize; 2] = [37, 23];
+const EVEN: [usize; 2] = [36, 24];
 
 /// Bumps of 16 bits: each bit of a height is used.
-fn height(index: usize) -> u16 {
-    let (x, y) = (index % WIDTH, index / WIDTH);
+fn height(width: usize, index: usize) -> u16 {
+    let (x, y) = (index % width, index / width);
     (x * x * 211 + y * 7919 + x * y * 13) as u16
 }
 
-/// A height map without a header, and its layout.
-fn input(folder: &Path, kind: &str) -> (std::path::PathBuf, RawLayout) {
-    let heights = (0..WIDTH * HEIGHT).map(height);
-    let bytes: Vec<u8> = match kind {
-        "u8" => heights.map(|height| (height >> 8) as u8).collect(),
-        "u16le" => heights.flat_map(u16::to_le_bytes).collect(),
-        _ => heights.flat_map(|height| (f32::from(height) / 65536.0).to_le_bytes()).collect(),
-    };
-    let path = folder.join(format!("{kind}.raw"));
-    std::fs::write(&path, bytes).unwrap();
-    (path, format!("{WIDTH}x{HEIGHT}:{kind}").parse().unwrap())
+/// What the heights are stored as.
+const KINDS: [&str; 3] = ["u8", "u16le", "f32le"];
+
+/// The tile to the right of each map, if anybody asks.
+fn tiles() -> TileTemplate {
+    "{x}_{y}.raw".parse().unwrap()
 }
 
-/// A bake, and the files of its maps.
+/// A height map without a header and the tile beside it, and their layout.
+fn input(folder: &Path, kind: &str, [width, height]: [usize; 2]) -> (PathBuf, RawLayout) {
+    let layout = format!("{width}x{height}:{kind}");
+    let folder = folder.join(layout.replace(':', "_"));
+    std::fs::create_dir_all(&folder).unwrap();
+    for tile in 0..2 {
+        let heights = (0..width * height).map(|index| self::height(width, index + 1000 * tile));
+        let bytes: Vec<u8> = match kind {
+            "u8" => heights.map(|height| (height >> 8) as u8).collect(),
+            "u16le" => heights.flat_map(u16::to_le_bytes).collect(),
+            _ => heights.flat_map(|height| (f32::from(height) / 65536.0).to_le_bytes()).collect(),
+        };
+        std::fs::write(folder.join(format!("{tile}_0.raw")), bytes).unwrap();
+    }
+    (folder.join("0_0.raw"), layout.parse().unwrap())
+}
+
+/// A bake and the format of its files.
 struct Case {
     extension: &'static str,
+    kinds: &'static [&'static str],
+    size: [usize; 2],
+    read: ReadOptions,
     options: BakeOptions,
     write: WriteOptions,
+    has_neighbours: bool,
 }
 
-/// Slopes and the formats of the maps and files: each at least once.
+/// Slopes, formats of maps and files, and ways to get there: each at least once.
 fn cases() -> Vec<Case> {
-    let normal = |encoding, depth, channels, convention| NormalFormat { encoding, depth, channels, convention };
-    let parallax = |encoding, depth| ParallaxFormat { encoding, depth };
-    let options = |scale: &str, filter: Filter, edges: &str, normal, parallax| BakeOptions {
-        scale: Scale::texels(scale.parse::<texbake::Rational>().unwrap()),
-        filter,
-        edges: edges.parse::<Edges>().unwrap(),
-        normal: Some(normal),
-        parallax: Some(parallax),
-        ..BakeOptions::default()
-    };
+    use BlockCompression::{Bc5, Bc7};
     use Channels::{Xy, Xyz};
     use Convention::{Dx, Gl};
     use Depth::{Bits8, Bits16, Float16, Float32};
     use Encoding::{Biased, Float, Snorm, Unorm};
-    let plain = |extension, options| Case { extension, options, write: WriteOptions::default() };
-    let packed = |compression| Case {
-        write: WriteOptions { compression, ..WriteOptions::default() },
-        ..plain("png", options("24", Filter::Central, "wrap", normal(Unorm, Bits8, Xyz, Gl), parallax(Biased, Bits8)))
-    };
-    let rough = |method, depth| {
-        Some(RoughnessOptions { method, base: "0.25".parse().unwrap(), format: RoughnessFormat { depth } })
-    };
-    let mips = |extension, blocks, options, roughness| Case {
+    let normal = |encoding, depth, channels, convention| NormalFormat { encoding, depth, channels, convention };
+    let parallax = |encoding, depth| ParallaxFormat { encoding, depth };
+    let case = |extension, scale: &str, filter: Filter, edges: &str, normal, parallax| Case {
         extension,
-        options: BakeOptions { roughness, ..options },
-        write: WriteOptions { mips: true, blocks, ..WriteOptions::default() },
+        kinds: &KINDS,
+        size: ODD,
+        read: ReadOptions::default(),
+        options: BakeOptions {
+            scale: Scale::texels(scale.parse::<texbake::Rational>().unwrap()),
+            filter,
+            edges: edges.parse::<Edges>().unwrap(),
+            normal: Some(normal),
+            parallax: Some(parallax),
+            ..BakeOptions::default()
+        },
+        write: WriteOptions::default(),
+        has_neighbours: false,
     };
-    let bytes = |filter, edges| options("24", filter, edges, normal(Unorm, Bits8, Xyz, Gl), parallax(Snorm, Bits8));
-    let words = options("7/3", Filter::Scharr, "mirror", normal(Snorm, Bits16, Xy, Dx), parallax(Unorm, Bits16));
-    let floats = options("3", Filter::Central, "wrap", normal(Float, Float16, Xyz, Gl), parallax(Float, Float32));
+    let plain =
+        |extension, parallax| case(extension, "24", Filter::Central, "wrap", normal(Unorm, Bits8, Xyz, Gl), parallax);
+    let png = || plain("png", parallax(Biased, Bits8));
+    let packed = |compression| Case { write: WriteOptions { compression, ..WriteOptions::default() }, ..png() };
+    let texture = |mips, blocks, case: Case| Case { write: WriteOptions { mips, blocks, ..case.write }, ..case };
+    let rough = |method, depth, case: Case| {
+        let roughness = RoughnessOptions { method, base: "1/4".parse().unwrap(), format: RoughnessFormat { depth } };
+        Case { options: BakeOptions { roughness: Some(roughness), ..case.options }, ..case }
+    };
+    let fast = |case: Case| Case { options: BakeOptions { precision: Precision::Fast, ..case.options }, ..case };
+    let words = |extension, filter| {
+        case(extension, "7/3", filter, "mirror", normal(Unorm, Bits16, Xy, Dx), parallax(Unorm, Bits16))
+    };
+    let floats = |extension| {
+        case(extension, "3", Filter::Central, "wrap", normal(Float, Float16, Xyz, Gl), parallax(Float, Float32))
+    };
+    let reduced = ReadOptions { shrink: NonZeroU32::new(2).unwrap(), ..ReadOptions::default() };
+    let colours = ReadOptions { color_space: ColorSpace::Srgb, ..ReadOptions::default() };
+    let tile = |filter, edges| Case {
+        has_neighbours: true,
+        ..case("png", "24", filter, edges, normal(Unorm, Bits8, Xyz, Gl), parallax(Biased, Bits8))
+    };
     vec![
-        plain("png", options("24", Filter::Central, "wrap", normal(Unorm, Bits8, Xyz, Gl), parallax(Biased, Bits8))),
-        plain("png", options("7/3", Filter::Sobel, "clamp", normal(Biased, Bits16, Xy, Dx), parallax(Unorm, Bits16))),
-        plain("tif", options("-0.35", Filter::Scharr, "mirror", normal(Snorm, Bits8, Xyz, Gl), parallax(Snorm, Bits8))),
-        plain(
-            "tif",
-            options("100", Filter::Prewitt, "wrap,clamp", normal(Unorm, Bits16, Xy, Gl), parallax(Snorm, Bits16)),
-        ),
-        plain("tif", options("3", Filter::Central, "wrap", normal(Float, Float32, Xyz, Dx), parallax(Float, Float32))),
-        plain("exr", options("24", Filter::Sobel, "wrap", normal(Float, Float32, Xyz, Gl), parallax(Float, Float32))),
-        plain("exr", options("24", Filter::Central, "clamp", normal(Float, Float16, Xy, Gl), parallax(Float, Float16))),
+        png(),
+        case("png", "7/3", Filter::Sobel, "clamp", normal(Biased, Bits16, Xy, Dx), parallax(Unorm, Bits16)),
+        case("tif", "-0.35", Filter::Scharr, "mirror", normal(Snorm, Bits8, Xyz, Gl), parallax(Snorm, Bits8)),
+        case("tif", "100", Filter::Prewitt, "wrap,clamp", normal(Unorm, Bits16, Xy, Gl), parallax(Snorm, Bits16)),
+        case("tif", "3", Filter::Central, "wrap", normal(Float, Float32, Xyz, Dx), parallax(Float, Float32)),
+        case("exr", "24", Filter::Sobel, "wrap", normal(Float, Float32, Xyz, Gl), parallax(Float, Float32)),
+        case("exr", "24", Filter::Central, "clamp", normal(Float, Float16, Xy, Gl), parallax(Float, Float16)),
         packed(Compression::Balanced),
         packed(Compression::Small),
-        mips("ktx2", None, bytes(Filter::Central, "wrap"), rough(RoughnessMethod::Lean, Bits8)),
-        mips("dds", None, words, rough(RoughnessMethod::Toksvig, Bits16)),
-        mips("ktx2", None, floats, None),
-        mips("dds", Some(BlockCompression::Bc5), bytes(Filter::Sobel, "clamp"), rough(RoughnessMethod::Lean, Bits8)),
-        mips("ktx2", Some(BlockCompression::Bc7), bytes(Filter::Central, "wrap,clamp"), None),
+        plain("ktx2", parallax(Snorm, Bits8)),
+        words("dds", Filter::Scharr),
+        floats("ktx2"),
+        texture(true, None, floats("dds")),
+        rough(RoughnessMethod::Lean, Bits8, texture(true, None, plain("ktx2", parallax(Snorm, Bits8)))),
+        rough(RoughnessMethod::Toksvig, Bits16, texture(true, None, words("dds", Filter::Sobel))),
+        texture(false, Some(Bc5), plain("dds", parallax(Snorm, Bits8))),
+        texture(true, Some(Bc5), plain("ktx2", parallax(Unorm, Bits8))),
+        rough(RoughnessMethod::Lean, Bits8, texture(true, Some(Bc7), plain("dds", parallax(Unorm, Bits8)))),
+        texture(false, Some(Bc7), plain("ktx2", parallax(Unorm, Bits8))),
+        fast(words("png", Filter::Central)),
+        fast(floats("exr")),
+        Case { size: EVEN, read: reduced, ..png() },
+        Case { kinds: &["u8", "u16le"], read: colours, ..words("png", Filter::Central) },
+        tile(Filter::Central, "clamp"),
+        tile(Filter::Sobel, "wrap,mirror"),
     ]
-}
-
-/// The bytes of a file that count: all, but of a KTX2 file those that name this version of texbake, and the places of what
-/// stands behind them.
-fn counted(path: &Path) -> Vec<u8> {
-    let bytes = std::fs::read(path).unwrap();
-    if path.extension().unwrap() != "ktx2" {
-        return bytes;
-    }
-    let levels: Vec<Vec<u8>> = ktx2::Reader::new(&bytes).unwrap().levels().map(|level| level.data.to_vec()).collect();
-    // From the format to the supercompression, and the data format descriptor (KTX 2.0, section 3).
-    let at = |word: usize| u32::from_le_bytes(bytes[word..word + 4].try_into().unwrap()) as usize;
-    let descriptor = &bytes[at(48)..at(48) + at(52)];
-    [&bytes[12..48], descriptor, &levels.concat()].concat()
 }
 
 #[test]
@@ -161,30 +188,35 @@ fn a_changed_byte_is_a_new_version() {
     let folder = TempDir::new().unwrap();
     let mut jobs = Vec::new();
     let baker = Arc::new(Baker::cpu());
-    for kind in ["u8", "u16le", "f32le"] {
-        let (input, raw) = input(folder.path(), kind);
-        for (number, Case { extension, options, write }) in cases().into_iter().enumerate() {
+    for kind in KINDS {
+        let cases = cases().into_iter().enumerate().filter(|(_, case)| case.kinds.contains(&kind));
+        for (number, Case { extension, size, read, options, write, has_neighbours, .. }) in cases {
+            let (input, raw) = input(folder.path(), kind, size);
             let output = |map: &str| Some(folder.path().join(format!("{kind}_{number}_{map}.{extension}")));
-            let roughness = options.roughness.and_then(|_| output("roughness"));
+            let around = || TileFolders::default().around(&input, &tiles(), 0, &options).unwrap();
             jobs.push(Job {
-                input: input.clone(),
-                outputs: Maps { normal: output("normal"), parallax: output("parallax"), roughness },
+                outputs: Maps {
+                    normal: output("normal"),
+                    parallax: output("parallax"),
+                    roughness: options.roughness.and_then(|_| output("roughness")),
+                },
                 normals: None,
-                neighbours: None,
-                read: ReadOptions { raw: Some(raw), ..ReadOptions::default() },
+                neighbours: has_neighbours.then(around),
+                read: ReadOptions { raw: Some(raw), ..read },
+                input,
                 options,
                 write,
                 baker: baker.clone(),
             });
         }
     }
-    for outcome in run(&jobs, 2, &Monitor::default(), &|_| ()) {
-        outcome.result.unwrap();
+    for (job, outcome) in jobs.iter().zip(run(&jobs, 2, &Monitor::default(), &|_| ())) {
+        outcome.result.unwrap_or_else(|error| panic!("{:?}: {error}", job.outputs));
     }
     let outputs = jobs.iter().flat_map(|job| job.outputs.iter());
     let found: Vec<(String, String)> = outputs
         .map(|path| {
-            let hash = blake3::hash(&counted(path)).to_hex();
+            let hash = blake3::hash(&std::fs::read(path).unwrap()).to_hex();
             (path.file_name().unwrap().to_str().unwrap().to_owned(), hash[..32].to_owned())
         })
         .collect();

@@ -74,3 +74,32 @@ fn events_and_outcomes_have_the_places_of_all_jobs() {
     assert_eq!(results, [Failed, Fresh, Baked, Baked]);
     assert_eq!(outcomes[1].result.as_ref().unwrap().size.to_string(), "9 x 8");
 }
+
+/// A plan that was cancelled knows nothing of files that it did not read to the end; small ones it reads.
+#[test]
+fn a_cancelled_plan_says_so() {
+    let folder = textures();
+    const SIDE: usize = 1100;
+    folder.file("tex/large_height.raw", (0..SIDE * SIDE).map(|index| (index % 251) as u8).collect::<Vec<_>>());
+    let job = |input: &str, raw: Option<&str>| Job {
+        input: folder.path(input),
+        outputs: Maps { normal: Some(folder.path("out").join(input).with_extension("png")), ..Maps::default() },
+        normals: None,
+        neighbours: None,
+        read: ReadOptions { raw: raw.map(|raw| raw.parse().unwrap()), ..ReadOptions::default() },
+        options: BakeOptions::default(),
+        write: WriteOptions::default(),
+        baker: Arc::new(Baker::cpu()),
+    };
+    let jobs = [job("tex/a_height.png", None), job("tex/large_height.raw", Some("1100x1100:u8"))];
+    let (out, monitor) = (folder.path("out"), Monitor::default());
+    FreshPlan::new(&jobs, &out, false, &monitor).run(1, &monitor, &|_| ());
+    monitor.cancel();
+    let plan = FreshPlan::new(&jobs, &out, false, &monitor);
+    let found: Vec<Freshness> = plan.files().collect();
+    assert_eq!(found, [Freshness::Fresh, Freshness::Stale(Reason::Interrupted)]);
+    let outcomes = plan.run(1, &monitor, &|_| ());
+    let results: Vec<FileResult> = outcomes.iter().map(FileResult::of).collect();
+    assert_eq!(results, [FileResult::Fresh, FileResult::NotBegun]);
+    assert_eq!(reasons(&jobs, &out), [Freshness::Fresh; 2]);
+}

@@ -8,6 +8,7 @@ mod kernel_version;
 mod levels;
 mod library;
 mod many;
+mod options;
 mod record;
 #[cfg(unix)]
 mod resume;

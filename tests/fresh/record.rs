@@ -165,6 +165,30 @@ fn lines_of_no_use_go() {
     assert_eq!(folder.files("out").len(), 3, "{:?}", folder.files("out"));
 }
 
+#[test]
+fn lines_of_outputs_that_are_gone_go() {
+    let folder = textures();
+    let names = || -> std::collections::BTreeSet<String> {
+        lines(&folder).iter().map(|line| line["outputs"][0]["name"].as_str().unwrap().to_owned()).collect()
+    };
+    // Names that the record escapes stay, since it cannot look for them.
+    let templates = ["{stem}_1", "{stem}_2", "{stem}_\u{301}", "{stem}_3"];
+    for name in templates {
+        assert_eq!(baked(&folder, &["--name", name]).len(), 3);
+    }
+    assert_eq!(names().len(), 12);
+    for name in folder.files("out").iter().filter(|name| !name.contains("_3")) {
+        fs::remove_file(folder.path("out").join(name)).unwrap();
+    }
+    // Six lines of twelve say nothing; one more, and they go.
+    assert_eq!(baked(&folder, &["--name", "{stem}_3"]), [""; 0]);
+    fs::remove_file(folder.path("out/a_3.png")).unwrap();
+    assert_eq!(baked(&folder, &["--name", "{stem}_3"]), ["a out/a_3.png is missing"]);
+    let found = names();
+    assert!(!found.iter().any(|name| name.contains("_1") || name.contains("_2")), "{found:?}");
+    assert_eq!(baked(&folder, &["--name", "{stem}_3"]), [""; 0]);
+}
+
 /// Once files were left alone for two seconds their state is remembered, and they are not read again: another content in
 /// the record goes unseen, until the state is another one.
 #[test]

@@ -1,10 +1,10 @@
 //! A run that was killed goes on where it stopped.
 
-use super::support::{contents, lines, record, results_of};
-use crate::cli::support::{Folder, bumps8};
-use crate::faults::watched::reaches;
+use super::support::{contents, lines, record, results, results_of};
+use crate::cli::support::{Folder, Run, bumps8};
+use crate::faults::watched::{PAUSE, reaches};
 use std::collections::{BTreeMap, BTreeSet};
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
 const TEXTURES: usize = 40;
@@ -69,4 +69,40 @@ fn lines_without_the_torn_one(folder: &Folder) -> BTreeSet<String> {
         line["outputs"][0]["name"].as_str().unwrap().strip_suffix("_normal.png").unwrap().to_owned()
     };
     lines(folder).into_iter().map(stem).collect()
+}
+
+/// An interrupt while files are compared: nothing is baked, and none is called changed.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_interrupted_comparison_knows_nothing() {
+    let folder = Folder::new();
+    folder.grey8("tex/a_height.png", 9, 8, bumps8);
+    folder.grey8("tex/b_height.png", 9, 8, bumps8);
+    results_of(&folder, &[], 0);
+    let before = (contents(&folder), std::fs::read(record(&folder)).unwrap());
+    // A hole that takes minutes to read.
+    let large = folder.path("tex/a_height.png").canonicalize().unwrap();
+    std::fs::File::options().write(true).open(&large).unwrap().set_len(1 << 39).unwrap();
+    for arguments in [&["--dry-run"][..], &[]] {
+        let bake = [&["bake", "tex", "--out", "out", "--report", "r.json"], arguments].concat();
+        let mut child = folder.command(&bake).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let open_files = format!("/proc/{}/fd", child.id());
+        let reads = || {
+            let mut files = std::fs::read_dir(&open_files).into_iter().flatten().flatten();
+            files.any(|file| std::fs::read_link(file.path()).is_ok_and(|path| path == large))
+        };
+        assert!(reaches(&mut child, PAUSE, reads));
+        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+        let run = Run::from(child.wait_with_output().unwrap()).ends(130);
+        assert!(
+            run.stderr.contains("interrupted: ") && !run.stdout.contains("changed"),
+            "{}{}",
+            run.stdout,
+            run.stderr
+        );
+        let results = results(&folder.json("r.json"));
+        assert_eq!(results["a"], "not_begun: interrupted before it was known");
+        assert_eq!(results["b"], "fresh");
+        assert!((contents(&folder), std::fs::read(record(&folder)).unwrap()) == before);
+    }
 }

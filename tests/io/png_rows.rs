@@ -8,9 +8,7 @@ use super::support::{Folder, Noise, Values, read_all_ways, read_error, read_norm
 use png::{BitDepth, ColorType, Compression, Filter};
 use texbake::io::{NormalReadOptions, ReadOptions, create_normals, open_heights};
 use texbake::stream::Monitor;
-use texbake::{
-    BakeOptions, Baker, CodesRef, Depth, Edge, Edges, Encoding, HeightsMut, Maps, NormalFormat, Size,
-};
+use texbake::{BakeOptions, Baker, CodesRef, Depth, Edge, Edges, Encoding, HeightsMut, Maps, NormalFormat, Size};
 
 /// Bytes that repeat the noise 30,000 bytes before them: inflating looks back as far as it may, across buffers.
 fn repeating(count: usize) -> Vec<u8> {
@@ -103,7 +101,9 @@ fn a_filter_that_does_not_exist_is_refused_at_its_row() {
 #[test]
 fn too_few_rows_are_noticed() {
     let rows = filtered();
-    assert!(read_all_ways(&Folder::new().file("w.png", &hand_made(30, 40, 8, 0, 0, &rows)), &Default::default()).is_ok());
+    assert!(
+        read_all_ways(&Folder::new().file("w.png", &hand_made(30, 40, 8, 0, 0, &rows)), &Default::default()).is_ok()
+    );
     for length in [39 * 31, 39 * 31 + 1, 40 * 31 - 1] {
         let message = error_of(&hand_made(30, 40, 8, 0, 0, &rows[..length]));
         assert!(message.contains("it is damaged; copy or export it again"), "{length}: {message}");

@@ -142,6 +142,12 @@ impl Backend for Cpu {
         format!("{threads} thread{plural}, {}", vectorised::instruction_set())
     }
 
+    /// Neither threads nor the instruction set change a byte: f32 operations that IEEE rounds, in their written order.
+    #[cfg(feature = "cli")]
+    fn fast_device(&self) -> String {
+        self.kind().into()
+    }
+
     fn host_threads(&self) -> Option<&ThreadPool> {
         self.own_threads.as_ref()
     }

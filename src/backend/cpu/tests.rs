@@ -4,6 +4,9 @@ mod fused;
 mod layers;
 mod tangents;
 
+use super::round::{Round, ToF16, ToF32, ToInteger};
+use super::slopes::{Estimate, Slopes};
+use super::sums::Height;
 use super::{Cpu, Reference};
 use crate::backend::{Backend, RowBytes};
 use crate::map::{
@@ -11,7 +14,7 @@ use crate::map::{
     ParallaxFormat, Size, TexelFormat,
 };
 use crate::ops::Precision;
-use crate::ops::bake::{BakeOptions, BakePlan, Filter, NormalOptions, ParallaxOptions};
+use crate::ops::bake::{BakeOptions, BakePlan, Filter, NormalOptions, ParallaxOptions, Slope};
 use crate::split_mix::SplitMix;
 use crate::stream::{CodeSink, MapBands, MapSink};
 use crate::{Rational, Scale};
@@ -272,6 +275,39 @@ fn fast_is_next_to_exact() {
                 let bound = if format.depth == Depth::Float32 { 16.0 } else { 1.0 };
                 assert!(greatest <= bound, "{greatest} codes apart: {format:?}, scale {text}");
             }
+        }
+    }
+}
+
+/// The same operations in a plain loop, which is compiled for the least instruction set: the widest gives the same bytes.
+#[test]
+fn no_instruction_set_changes_a_byte_of_fast() {
+    let mut random = SplitMix(9);
+    let size = Size::new(67, 41).unwrap();
+    let map = Grid::from_fn(67, 41, |_, _| random.bits() as u16).unwrap();
+    for format in formats() {
+        for text in ["1", "24", "0.01", "-7/3"] {
+            let precision = Precision::Fast;
+            let options = NormalOptions { scale: scale(text), format, precision, ..NormalOptions::default() };
+            let plan = BakePlan::new(&options.into(), size, HeightType::U16).unwrap();
+            let Slope::Integer(slope) = plan.slope else { panic!("heights of integers") };
+            let estimate = Estimate::<f32>::new(slope, 65_535);
+            let height = |x: usize, y: usize| map.texels()[y % 41 * 67 + x % 67];
+            let components = (0..67 * 41).flat_map(|at| {
+                let (x, y) = (at % 67 + 66, at / 67 + 40);
+                let around = [0, 1, 2].map(|down| [0, 1, 2].map(|right| height(x + right, y + down)));
+                let normal = Slopes::<u16>::normal(&estimate, u16::sums(plan.stencil, around));
+                normal.into_iter().take(format.channels.count())
+            });
+            let texel = format.texel();
+            let plain = match format.depth {
+                Depth::Bits8 => Codes::U8(components.map(|it| ToInteger::<u8>::new(texel).code(it)).collect()),
+                Depth::Bits16 => Codes::U16(components.map(|it| ToInteger::<u16>::new(texel).code(it)).collect()),
+                Depth::Float16 => Codes::F16(components.map(|it| ToF16.code(it)).collect()),
+                Depth::Float32 => Codes::F32(components.map(|it| ToF32.code(it)).collect()),
+            };
+            let fast = baked(&Cpu::shared(), &map.clone().into(), &options, 41);
+            assert_eq!(difference(size, texel, &fast, &plain), None, "{format:?}, scale {text}");
         }
     }
 }

@@ -9,7 +9,7 @@ use super::reason::{Change, Reason};
 use super::record::Record;
 use crate::batch::{Files, Job};
 use crate::stream::Monitor;
-use std::io;
+use std::io::{self, ErrorKind};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use std::sync::Arc;
 pub(super) fn check(job: &Job, record: &Record, monitor: &Monitor) -> Result<Decision, Reason> {
     let Files { inputs, outputs } = job.files();
     let lines = outputs.iter().map(|output| find(record, output)).collect::<Result<Vec<_>, _>>()?;
-    let options = key::of(job, &job.baker.name());
+    let options = key::of(job, None);
     for line in &lines {
         if line.kernel != KERNEL_VERSION {
             return Err(Reason::Kernel { from: line.kernel, to: KERNEL_VERSION });
@@ -34,16 +34,17 @@ pub(super) fn check(job: &Job, record: &Record, monitor: &Monitor) -> Result<Dec
     if line.inputs.len() != inputs.len() {
         return Err(Reason::OtherInputs);
     }
-    let inputs = line.inputs.iter().zip(inputs).map(|(then, input)| {
-        is_there(input).then_some(()).ok_or_else(|| Reason::Unreadable(input.into()))?;
-        same(then.compare(input, monitor), || Reason::Input(input.into()))
-    });
+    let same = |then: &Content, path: &Path, changed: fn(std::path::PathBuf) -> Reason| {
+        let now = then.still_in(path, monitor).map_err(|error| unread(path, &error))?;
+        now.ok_or_else(|| changed(path.into()))
+    };
+    let inputs = line.inputs.iter().zip(inputs).map(|(then, input)| same(then, input, Reason::Input));
     let inputs = inputs.collect::<Result<_, _>>()?;
     let outputs = outputs.into_iter().map(|path| {
         let name = record.name(path);
-        let edited = || Reason::Edited(path.into());
-        let then = line.outputs.iter().find(|output| output.name == name).ok_or_else(edited)?;
-        Ok(Output { content: same(then.content.compare(path, monitor), edited)?, name })
+        let then = line.outputs.iter().find(|output| output.name == name);
+        let then = then.ok_or_else(|| Reason::Unknown(path.into()))?;
+        Ok(Output { content: same(&then.content, path, Reason::Edited)?, name })
     });
     let renewed = Line { inputs, outputs: outputs.collect::<Result<_, _>>()?, ..line.as_ref().clone() };
     let renewed = Some(renewed).filter(|renewed| renewed != line.as_ref());
@@ -52,7 +53,8 @@ pub(super) fn check(job: &Job, record: &Record, monitor: &Monitor) -> Result<Dec
 
 /// How an output was baked, if it is there.
 fn find(record: &Record, output: &Path) -> Result<Arc<Line>, Reason> {
-    match (record.line(output), is_there(output)) {
+    let is_there = output.try_exists().map_err(|error| unread(output, &error))?;
+    match (record.line(output), is_there) {
         (Some(line), true) => Ok(line),
         (Some(_), false) => Err(Reason::Missing(output.into())),
         (None, true) => Err(Reason::Unknown(output.into())),
@@ -60,14 +62,10 @@ fn find(record: &Record, output: &Path) -> Result<Arc<Line>, Reason> {
     }
 }
 
-fn is_there(file: &Path) -> bool {
-    file.try_exists().unwrap_or(false)
-}
-
-/// The content of a file that is as it was.
-fn same(compared: io::Result<(Content, bool)>, changed: impl FnOnce() -> Reason) -> Result<Content, Reason> {
-    match compared {
-        Ok((content, true)) => Ok(content),
-        _ => Err(changed()),
+/// Why nothing is known of a file's content.
+fn unread(path: &Path, error: &io::Error) -> Reason {
+    match error.kind() {
+        ErrorKind::Interrupted => Reason::Interrupted,
+        _ => Reason::Unreadable(path.into(), error.to_string()),
     }
 }

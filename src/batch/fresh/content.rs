@@ -17,57 +17,63 @@ pub(super) struct Content {
     state: Option<FileState>,
 }
 
+/// Bytes that are read between two looks for an interrupt.
+const PIECE: usize = 1 << 20;
+
 impl Content {
-    /// Reads the file that was found as `look` says.
+    /// Of a file that was just written, and may be another one by now.
+    pub fn written(hash: String) -> Self {
+        Self { hash, state: None }
+    }
+
+    /// Reads the file that was found as `look` says; `None` if it changed since.
     ///
     /// # Errors
-    /// What the system says; [`ErrorKind::Other`] if it changed since; [`ErrorKind::Interrupted`] if `monitor` says so.
-    pub fn read(path: &Path, look: &Look, monitor: &Monitor) -> io::Result<Self> {
-        let hash = hash(path, monitor)?;
-        if Look::at(path)?.state != look.state {
-            return Err(io::Error::other("it changed while it was read"));
+    /// What the system says; [`ErrorKind::Interrupted`] if `monitor` says so.
+    pub fn read(path: &Path, look: &Look, monitor: &Monitor) -> io::Result<Option<Self>> {
+        if !std::fs::metadata(path)?.is_file() {
+            return Err(io::Error::other("it is no file"));
         }
-        Ok(Self { hash, state: look.settled() })
+        let hash = hash(&mut File::open(path)?, monitor)?;
+        let is_same = Look::at(path)?.state == look.state;
+        Ok(is_same.then(|| Self { hash, state: look.settled() }))
     }
 
-    /// What is in the file at `path`; `None` if it cannot be read, or is written to.
-    pub fn now(path: &Path) -> Option<Self> {
-        let look = Look::at(path).ok()?;
-        Self::read(path, &look, &Monitor::default()).ok()
+    /// Whether the file that was found as `look` says has this content for sure.
+    pub fn is_known_by(&self, look: &Look) -> bool {
+        self.state.is_some() && self.state == look.state
     }
 
-    /// What is in the file at `path` now, and whether that is this content; the file is read only if its state is
-    /// another one.
+    /// This content with the state in which the file at `path` has it; `None` if it has another one. The file is read
+    /// only if its state is another one.
     ///
     /// # Errors
     /// As [`Content::read`].
-    pub fn compare(&self, path: &Path, monitor: &Monitor) -> io::Result<(Self, bool)> {
+    pub fn still_in(&self, path: &Path, monitor: &Monitor) -> io::Result<Option<Self>> {
         let look = Look::at(path)?;
-        if self.state.is_some() && self.state == look.state {
-            return Ok((self.clone(), true));
+        if self.is_known_by(&look) {
+            return Ok(Some(self.clone()));
         }
         let now = Self::read(path, &look, monitor)?;
-        let is_same = now.hash == self.hash;
-        Ok((now, is_same))
+        Ok(now.filter(|now| now.hash == self.hash))
     }
 }
 
-/// BLAKE3 of a file's bytes, in hexadecimal digits.
-fn hash(path: &Path, monitor: &Monitor) -> io::Result<String> {
-    if !std::fs::metadata(path)?.is_file() {
-        return Err(io::Error::other("it is no file"));
-    }
-    let mut file = File::open(path)?;
+/// BLAKE3 of the bytes to come, in hexadecimal digits.
+///
+/// # Errors
+/// As [`Content::read`]; what is shorter than a MiB is read to its end, interrupted or not.
+pub(super) fn hash(bytes: &mut dyn Read, monitor: &Monitor) -> io::Result<String> {
     let mut hasher = blake3::Hasher::new();
-    let mut buffer = vec![0; 256 << 10];
+    let mut piece = vec![0; PIECE];
     loop {
-        match file.read(&mut buffer) {
+        match bytes.read(&mut piece) {
             Ok(0) => return Ok(hasher.finalize().to_hex().to_string()),
-            Ok(read) => _ = hasher.update(&buffer[..read]),
+            Ok(read) => _ = hasher.update(&piece[..read]),
             Err(error) if error.kind() == ErrorKind::Interrupted => {}
             Err(error) => return Err(error),
         }
-        if monitor.is_cancelled() {
+        if hasher.count() >= PIECE as u64 && monitor.is_cancelled() {
             return Err(ErrorKind::Interrupted.into());
         }
     }

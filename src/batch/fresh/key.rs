@@ -1,5 +1,6 @@
 //! The options on which the bytes of a job's outputs depend.
 
+use crate::baker::Ran;
 use crate::batch::{Job, Options};
 use crate::io::{NormalReadOptions, is_compressed};
 use crate::ops::Precision;
@@ -13,9 +14,9 @@ pub(super) type Key = BTreeMap<String, String>;
 /// What changes no byte: a limit, and a number that goes into reports alone.
 const WITHOUT_EFFECT: [&str; 2] = ["max_bytes", "iterations"];
 
-/// The options of `job`, run by `device`: every field of [`Options`], so that none can be forgotten, but what no output
-/// follows; what its other inputs are read by, and the device where `fast` lets it decide over bytes.
-pub(super) fn of(job: &Job, device: &str) -> Key {
+/// The options of `job`, which ran, or will run: every field of [`Options`], so that none can be forgotten, but what no
+/// output follows; what its other inputs are read by, and the device where `fast` lets it decide over bytes.
+pub(super) fn of(job: &Job, ran: Option<&Ran>) -> Key {
     let text = |value: Value| match value {
         Value::Null => None,
         Value::String(text) => Some(text),
@@ -35,7 +36,7 @@ pub(super) fn of(job: &Job, device: &str) -> Key {
         key.insert("normals".into(), format!("{encoding} {channels} {convention}"));
     }
     if job.options.precision == Precision::Fast {
-        key.insert("device".into(), device.into());
+        key.insert("device".into(), job.baker.fast_device(ran));
     }
     key
 }

@@ -18,7 +18,9 @@ mod reason;
 mod record;
 mod run;
 mod state;
+mod written;
 
 pub use kernel_version::KERNEL_VERSION;
 pub use plan::FreshPlan;
 pub use reason::{Change, Freshness, Reason};
+pub(super) use written::Written;

@@ -6,8 +6,8 @@ use super::line::Line;
 use super::reason::{Freshness, Reason};
 use super::record::Record;
 use super::state::Look;
-use crate::batch::Job;
-use crate::batch::targets;
+use crate::batch::targets::{self, Refusal};
+use crate::batch::{Files, Job};
 use crate::stream::Monitor;
 use rayon::prelude::*;
 use std::path::Path;
@@ -50,36 +50,33 @@ pub(super) enum Decision {
         renewed: Option<Line>,
     },
     /// It is to be baked.
-    Stale { reason: Reason, inputs: Vec<Before> },
+    Stale {
+        /// Why.
+        reason: Reason,
+        /// Empty if one of them cannot be read: then the bake fails, and there is nothing to remember.
+        inputs: Vec<Before>,
+    },
+    /// It must not be baked.
+    Refused(Refusal),
 }
 
 /// An input before it is baked.
 pub(super) struct Before {
     pub look: Look,
-    /// Of one that could be written to again without getting another state.
+    /// What is in it, if that was known already, or it could be written to again without getting another state.
     pub content: Option<Content>,
 }
 
 impl<'a> FreshPlan<'a> {
     /// Decides about `jobs`, whose outputs lie below `folder`; all are to be baked if that `is_forced`.
     ///
-    /// Files are read where nothing else can tell, several at a time, until `monitor` is cancelled. Nothing is written.
+    /// Files are read where nothing else can tell, several at a time, until `monitor` is cancelled: what is not known by
+    /// then is [`Reason::Interrupted`]. Nothing is written.
     pub fn new(jobs: &'a [Job], folder: &Path, is_forced: bool, monitor: &Monitor) -> Self {
         let (record, warning) = Record::read(folder);
-        let decide = |(job, refusal): (&Job, Option<_>)| {
-            if let Some(error) = refusal {
-                return Decision::Stale { reason: Reason::Refused(ToString::to_string(&error)), inputs: Vec::new() };
-            }
-            let reason = match is_forced {
-                true => Reason::Forced,
-                false => match check(job, &record, monitor) {
-                    Ok(fresh) => return fresh,
-                    Err(reason) => reason,
-                },
-            };
-            let inputs = job.files().inputs.into_iter().map(|input| Before::of(input, monitor));
-            // Without one of them the bake fails, and there is nothing to remember.
-            Decision::Stale { reason, inputs: inputs.collect::<Option<_>>().unwrap_or_default() }
+        let decide = |(job, refusal): (&Job, Option<Refusal>)| match refusal {
+            Some(refusal) => Decision::Refused(refusal),
+            None => Decision::about(job, &record, is_forced, monitor),
         };
         let refusals = targets::refusals(&Job::all_files(jobs));
         let decisions = jobs.par_iter().zip(refusals).map(decide).collect();
@@ -106,22 +103,55 @@ impl<'a> FreshPlan<'a> {
 }
 
 impl Decision {
+    fn about(job: &Job, record: &Record, is_forced: bool, monitor: &Monitor) -> Self {
+        let reason = match is_forced {
+            true => Reason::Forced,
+            false => match check(job, record, monitor) {
+                Ok(fresh) => return fresh,
+                Err(reason) => reason,
+            },
+        };
+        if monitor.is_cancelled() {
+            return Self::Stale { reason, inputs: Vec::new() };
+        }
+        let Files { inputs, outputs } = job.files();
+        let line = outputs.first().and_then(|output| record.line(output));
+        let then = |place: usize| line.as_ref()?.inputs.get(place);
+        let inputs = inputs.iter().enumerate().map(|(place, input)| Before::of(input, then(place), monitor));
+        Self::Stale { reason, inputs: inputs.collect::<Option<_>>().unwrap_or_default() }
+    }
+
     pub fn freshness(&self) -> Freshness {
         match self {
             Self::Fresh { .. } => Freshness::Fresh,
             Self::Stale { reason, .. } => Freshness::Stale(reason.clone()),
+            Self::Refused(refusal) => Freshness::Stale(Reason::Refused(refusal.error().to_string())),
         }
     }
 }
 
 impl Before {
-    /// Looks at an input, and reads it if it was written to just now; `None` if it cannot be read.
-    fn of(input: &Path, monitor: &Monitor) -> Option<Self> {
+    /// Looks at an input, and reads it if it was written to just now; `None` if it cannot be read. `then` is what was in
+    /// it when its output was baked before.
+    fn of(input: &Path, then: Option<&Content>, monitor: &Monitor) -> Option<Self> {
         let look = Look::at(input).ok()?;
-        let content = match look.is_settled {
-            true => None,
-            false => Some(Content::read(input, &look, monitor).ok()?),
+        let content = match then.filter(|then| then.is_known_by(&look)) {
+            Some(then) => Some(then.clone()),
+            None if look.is_settled => None,
+            None => Some(Content::read(input, &look, monitor).ok()??),
         };
         Some(Self { look, content })
+    }
+
+    /// The content of an input that is as it was before the bake; `None` if it is not, or `monitor` was cancelled.
+    pub fn unchanged(&self, input: &Path, monitor: &Monitor) -> Option<Content> {
+        let now = Look::at(input).ok()?;
+        if let Some(content) = self.content.as_ref().filter(|content| content.is_known_by(&now)) {
+            return Some(content.clone());
+        }
+        // The state is that of before, or it is no content.
+        let now = Content::read(input, &self.look, monitor).ok()??;
+        let was_same = self.content.as_ref().is_none_or(|before| before.hash == now.hash);
+        was_same.then_some(now)
     }
 }

@@ -31,8 +31,10 @@ pub enum Reason {
     Input(PathBuf),
     /// It was baked from more or fewer files.
     OtherInputs,
-    /// An input cannot be read.
-    Unreadable(PathBuf),
+    /// An input or an output cannot be read, and why.
+    Unreadable(PathBuf, String),
+    /// Its files were not read to the end: the plan was cancelled.
+    Interrupted,
     /// It was baked by other options.
     Options(Vec<Change>),
     /// Another version of texbake, which baked other bytes.
@@ -90,7 +92,8 @@ impl fmt::Display for Reason {
             Self::Edited(output) => write!(f, "{} was edited", output.display()),
             Self::Input(input) => write!(f, "{} changed", input.display()),
             Self::OtherInputs => f.write_str("other inputs"),
-            Self::Unreadable(input) => write!(f, "{} cannot be read", input.display()),
+            Self::Unreadable(file, reason) => write!(f, "{} cannot be read: {reason}", file.display()),
+            Self::Interrupted => f.write_str("interrupted before it was known"),
             Self::Options(changes) => {
                 let changes: Vec<String> = changes.iter().map(Change::to_string).collect();
                 f.write_str(&changes.join(", "))

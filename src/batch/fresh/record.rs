@@ -7,7 +7,7 @@
 use super::line::Line;
 use crate::error::{Error, Result};
 use crate::io::replace::Replacement;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -17,14 +17,14 @@ use std::sync::Arc;
 pub(super) struct Record {
     folder: PathBuf,
     path: PathBuf,
-    content: Content,
+    lines: Lines,
 }
 
 /// What a record's file holds.
 #[derive(Default)]
-struct Content {
+struct Lines {
     /// By the name of the output.
-    lines: HashMap<String, Arc<Line>>,
+    by_output: HashMap<String, Arc<Line>>,
     /// Lines that can be read, those that later ones replaced included.
     read: usize,
     /// Lines that cannot.
@@ -46,17 +46,17 @@ impl Record {
     /// Reads the record of `folder`, with a warning about what cannot be read.
     pub fn read(folder: &Path) -> (Self, Option<String>) {
         let path = folder.join(NAME);
-        let (content, warning) = match read_locked(&path) {
+        let (lines, warning) = match read_locked(&path) {
             Ok(bytes) => {
-                let content = Content::parse(&bytes);
-                let warning = content.warning();
-                (content, warning)
+                let lines = Lines::parse(&bytes);
+                let warning = lines.warning();
+                (lines, warning)
             }
             Err(error) if error.kind() == ErrorKind::NotFound => Default::default(),
-            Err(error) => (Content::default(), Some(error.to_string())),
+            Err(error) => (Lines::default(), Some(error.to_string())),
         };
         let warning = warning.map(|reason| format!("{}: {reason}: what it was about is baked again", path.display()));
-        (Self { folder: folder.into(), path, content }, warning)
+        (Self { folder: folder.into(), path, lines }, warning)
     }
 
     /// The name by which lines call an output: parts that are no Unicode are escaped.
@@ -69,9 +69,15 @@ impl Record {
         below.components().map(part).collect::<Vec<_>>().join("/")
     }
 
+    /// Whether there is an output of this name; of one with escapes nobody knows.
+    fn has(&self, name: &str) -> bool {
+        let is_there = |path: &Path| path.try_exists().unwrap_or(true);
+        name.contains('\\') || is_there(&self.folder.join(name)) || is_there(name.as_ref())
+    }
+
     /// How an output was baked.
     pub fn line(&self, output: &Path) -> Option<Arc<Line>> {
-        self.content.lines.get(&self.name(output)).cloned()
+        self.lines.by_output.get(&self.name(output)).cloned()
     }
 
     /// Rewrites the file if most of it is of no use, or if nothing can be added to it.
@@ -79,20 +85,34 @@ impl Record {
     /// # Errors
     /// [`Error::File`] if it is read-only or no file; [`Error::Io`].
     pub fn tidy(&self) -> Result<()> {
-        if !self.content.is_wasteful() {
+        if !self.is_wasteful(&self.lines) {
             return Ok(());
         }
         // Nobody adds to it meanwhile; those who wait find another file then.
         let mut locked = self.lock().map_err(Error::io(&self.path))?;
-        let content = Content::parse(&read_whole(&mut locked).map_err(Error::io(&self.path))?);
-        if !content.is_wasteful() {
+        let lines = Lines::parse(&read_whole(&mut locked).map_err(Error::io(&self.path))?);
+        if !self.is_wasteful(&lines) {
             return Ok(());
         }
         let file = Replacement::create(&self.path)?;
-        let lines: Vec<&Line> = content.live().into_values().map(Arc::as_ref).collect();
-        let text = HEADER.to_owned() + &text(lines);
+        let text = HEADER.to_owned() + &text(self.live(&lines).into_values().map(Arc::as_ref));
         file.output()?.write_all(text.as_bytes()).map_err(Error::io(&self.path))?;
         file.commit()
+    }
+
+    /// Each line that says something about an output that is there, by the first such name.
+    fn live<'l>(&self, lines: &'l Lines) -> BTreeMap<&'l str, &'l Arc<Line>> {
+        let is_first = |(name, line): &(&String, &Arc<Line>)| {
+            let mut names = line.outputs.iter().map(|output| &output.name);
+            let says = |name: &String| Arc::ptr_eq(&lines.by_output[name], line) && self.has(name);
+            names.find(|name| says(name)) == Some(*name)
+        };
+        lines.by_output.iter().filter(is_first).map(|(name, line)| (name.as_str(), line)).collect()
+    }
+
+    fn is_wasteful(&self, lines: &Lines) -> bool {
+        let all = lines.read + lines.unreadable;
+        lines.foreign.is_some() || all > 2 * self.live(lines).len()
     }
 
     /// Adds lines.
@@ -132,42 +152,28 @@ impl Record {
     }
 }
 
-impl Content {
+impl Lines {
     fn parse(bytes: &[u8]) -> Self {
-        let mut content = Self::default();
-        let Some(lines) = bytes.strip_prefix(HEADER.as_bytes()) else {
-            content.foreign = foreign(bytes);
-            return content;
+        let mut lines = Self::default();
+        let Some(text) = bytes.strip_prefix(HEADER.as_bytes()) else {
+            lines.foreign = foreign(bytes);
+            return lines;
         };
-        for line in lines.split_inclusive(|byte| *byte == b'\n') {
+        for line in text.split_inclusive(|byte| *byte == b'\n') {
             match serde_json::from_slice::<Line>(line) {
                 // A kill came in between.
                 _ if !line.ends_with(b"\n") => {}
-                Ok(line) => content.insert(line),
-                Err(_) => content.unreadable += 1,
+                Ok(line) => lines.insert(line),
+                Err(_) => lines.unreadable += 1,
             }
         }
-        content
+        lines
     }
 
     fn insert(&mut self, line: Line) {
         self.read += 1;
         let line = Arc::new(line);
-        self.lines.extend(line.outputs.iter().map(|output| (output.name.clone(), line.clone())));
-    }
-
-    /// Each line that says something about an output, by the first such name.
-    fn live(&self) -> std::collections::BTreeMap<&str, &Arc<Line>> {
-        let is_first = |(name, line): &(&String, &Arc<Line>)| {
-            let mut names = line.outputs.iter().map(|output| &output.name);
-            names.find(|name| Arc::ptr_eq(&self.lines[*name], line)) == Some(*name)
-        };
-        self.lines.iter().filter(is_first).map(|(name, line)| (name.as_str(), line)).collect()
-    }
-
-    fn is_wasteful(&self) -> bool {
-        let all = self.read + self.unreadable;
-        self.foreign.is_some() || all > 2 * self.live().len()
+        self.by_output.extend(line.outputs.iter().map(|output| (output.name.clone(), line.clone())));
     }
 
     fn warning(&self) -> Option<String> {

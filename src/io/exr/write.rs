@@ -4,7 +4,6 @@ use crate::error::{Error, Result};
 use crate::io::replace::{Output, Replacement};
 use crate::io::sink::{FileSink, RowEncoder, cannot_hold};
 use crate::map::{CodesRef, Depth, Size, TexelFormat};
-use crate::stream::RowSink;
 use exr::block::chunk::Chunk;
 use exr::block::{BlockIndex, UncompressedBlock};
 use exr::compression::Compression;
@@ -40,7 +39,7 @@ struct ExrEncoder {
 }
 
 /// Creates an EXR with the channels R, G and B, or R and G, or Y alone, of half or float samples.
-pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box<dyn RowSink>> {
+pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box<FileSink>> {
     let sample_type = sample_type(path, format)?;
     // EXR sorts channels by name.
     let (layer, names, order): (_, &[&str], &'static [usize]) = match format.channels {

@@ -16,7 +16,6 @@ use crate::io::Compression;
 use crate::io::replace::{Output, Replacement};
 use crate::io::sink::{FileSink, RowEncoder, cannot_hold};
 use crate::map::{CodesRef, Depth, Encoding, Size, TexelFormat};
-use crate::stream::RowSink;
 use png::chunk::IDAT;
 use png::{BitDepth, ColorType, Encoder, EncodingError, Writer};
 use std::io::{Seek, SeekFrom, Write};
@@ -65,12 +64,7 @@ struct RowLayout {
 
 /// Creates a PNG with 8 or 16 bits: grey for one channel, else RGB; xy maps leave blue 0, since PNG's only two-channel
 /// type means transparency.
-pub(crate) fn create(
-    path: &Path,
-    size: Size,
-    format: TexelFormat,
-    compression: Compression,
-) -> Result<Box<dyn RowSink>> {
+pub(crate) fn create(path: &Path, size: Size, format: TexelFormat, compression: Compression) -> Result<Box<FileSink>> {
     let effort = match compression {
         Compression::Fast => Effort::Fast,
         Compression::Balanced => Effort::Balanced,

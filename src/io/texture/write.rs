@@ -14,7 +14,7 @@ use crate::io::replace::{Output, Replacement};
 use crate::io::sink::{ExpectedRows, FileSink, RowEncoder};
 use crate::io::write::WriteOptions;
 use crate::map::{Codes, CodesRef, Size, TexelFormat};
-use crate::stream::{LevelSink, RowSink};
+use crate::stream::LevelSink;
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -71,7 +71,7 @@ pub(in crate::io) fn create(
     size: Size,
     codes: TexelFormat,
     options: &WriteOptions,
-) -> Result<Box<dyn RowSink>> {
+) -> Result<Box<FileSink>> {
     let format = TextureFormat::of(path, codes, options.blocks)?;
     let mut levels = levels(size, options.mips, &format);
     let header = match container {

@@ -7,7 +7,6 @@ use crate::error::{Error, Result};
 use crate::io::replace::{Output, Replacement};
 use crate::io::sink::{FileSink, RowEncoder, cannot_hold};
 use crate::map::{CodesRef, Depth, Encoding, Size, TexelFormat};
-use crate::stream::RowSink;
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -25,7 +24,7 @@ struct TiffEncoder {
 }
 
 /// Creates a TIFF: 8 and 16-bit integers, signed for snorm, and 32-bit floats; one sample for each code of a texel.
-pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box<dyn RowSink>> {
+pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box<FileSink>> {
     check(path, format)?;
     let replacement = Replacement::create(path)?;
     let mut encoder = TiffEncoder { path: path.into(), output: replacement.output()?, size, format, big: false };
@@ -208,6 +207,7 @@ impl TiffEncoder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stream::RowSink;
     use tiff::decoder::{Decoder, DecodingResult};
 
     #[test]
