@@ -53,13 +53,13 @@ pub use raw::{RawKind, RawLayout};
 pub(crate) use sink::Witness;
 pub use texture::BlockCompression;
 #[cfg(feature = "cli")]
+pub(crate) use write::create_witnessed;
+#[cfg(feature = "cli")]
 pub(crate) use write::is_compressed;
 pub use write::{
     Compression, WriteOptions, check_normal_format, check_normals_with, check_parallax_format, check_parallax_with,
     check_roughness, create_normals, create_normals_with, create_parallax, create_parallax_with, create_roughness_with,
 };
-#[cfg(feature = "cli")]
-pub(crate) use write::{create_witnessed, is_compressed};
 
 use crate::error::Result;
 use crate::map::{Channels, Convention, Encoding, HeightMap, NormalMap, ParallaxMap};
