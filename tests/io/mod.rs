@@ -12,6 +12,7 @@ mod normal;
 mod obj;
 mod parallax;
 mod png;
+mod png_rows;
 mod png_written;
 #[cfg(feature = "cli")]
 mod program;

@@ -7,11 +7,11 @@ use texbake::io::{Channel, ColorSpace, ReadOptions, create_normals, open_heights
 use texbake::{Channels, CodesRef, Depth, Encoding, Size};
 
 /// The bytes of a PNG.
-fn encode(width: u32, height: u32, color: ColorType, depth: BitDepth, rows: &[u8]) -> Vec<u8> {
+pub fn encode(width: u32, height: u32, color: ColorType, depth: BitDepth, rows: &[u8]) -> Vec<u8> {
     encode_with(width, height, color, depth, rows, |_| ())
 }
 
-fn encode_with(
+pub fn encode_with(
     width: u32,
     height: u32,
     color: ColorType,
@@ -226,7 +226,7 @@ fn sizes_are_judged_by_the_header() {
     let hollow = folder.file("o.png", &hand_made(30000, 30000, 8, 0, 0, &[0]));
     let message = read_error(&hollow, &default());
     assert!(message.contains("its header claims 30000 x 30000 texels, which cannot come out of"), "{message}");
-    // The limit counts what is decoded at once: two rows, or an interlaced image.
+    // The limit counts what is decoded at once: a few rows, or an interlaced image.
     let rows: Vec<u8> = (0..100 * 101).map(|i| if i % 101 == 0 { 0 } else { i as u8 }).collect();
     let little = ReadOptions { max_bytes: 5000, ..default() };
     let by_rows = folder.file("r.png", &hand_made(100, 100, 8, 0, 0, &rows));

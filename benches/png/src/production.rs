@@ -11,7 +11,7 @@ mod stripe;
 use crate::Image;
 use filter::Filter;
 use rayon::prelude::*;
-use stripe::{Stripe, stripe_rows};
+use stripe::Stripe;
 
 /// The levels of `--compression`.
 #[derive(Clone, Copy, Debug)]
@@ -38,11 +38,12 @@ pub fn encode(image: &Image, level: Level, pool: &rayon::ThreadPool) -> usize {
         Level::Small => stripe::Effort::Small,
     };
     let row = image.row();
-    let stripes: Vec<&[u8]> = image.samples.chunks(stripe_rows(row) * row).collect();
+    let rows = effort.stripe_rows(row);
+    let stripes: Vec<&[u8]> = image.samples.chunks(rows * row).collect();
     let size = |number: usize| {
         let above = number.checked_sub(1).map(|before| &stripes[before][stripes[before].len() - row..]);
         let mut stripe = Stripe::default();
-        stripe.begin(row, image.bpp, above);
+        stripe.begin(rows, row, image.bpp, above);
         stripes[number].chunks_exact(row).for_each(|samples| stripe.next_row().copy_from_slice(samples));
         stripe.encode(effort);
         // The checksum of the chunk that would hold the stripe.

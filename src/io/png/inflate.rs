@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 const WINDOW_BYTES: usize = 32 << 10;
 
 /// Bytes of rows in a buffer, about.
-const BUFFER_BYTES: usize = 256 << 10;
+const BUFFER_BYTES: usize = 64 << 10;
 
 /// Some rows, each behind the number of its filter.
 pub(super) struct FilteredRows {
@@ -40,7 +40,7 @@ struct Inflater {
 pub(super) fn inflate_ahead(path: &Path, row_bytes: usize, height: usize) -> Result<ReadAhead<FilteredRows>> {
     let mut inflater = Inflater::open(path)?;
     ReadAhead::new(move |mut filling: Filling<FilteredRows>| {
-        let most = (BUFFER_BYTES / row_bytes).max(1);
+        let most = buffer_rows(row_bytes, height);
         for first in (0..height).step_by(most) {
             let Some(buffer) = filling.take() else { return Ok(()) };
             let mut rows = buffer.unwrap_or(FilteredRows { bytes: Vec::new(), row_bytes });
@@ -51,9 +51,15 @@ pub(super) fn inflate_ahead(path: &Path, row_bytes: usize, height: usize) -> Res
     })
 }
 
-/// Bytes that are held at most while rows of `row_bytes` are inflated.
-pub(super) fn held_bytes(row_bytes: usize) -> u64 {
-    (BUFFERS * (WINDOW_BYTES + row_bytes.max(BUFFER_BYTES)) + WINDOW_BYTES + READ_BYTES) as u64
+/// Rows of a buffer.
+fn buffer_rows(row_bytes: usize, height: usize) -> usize {
+    (BUFFER_BYTES / row_bytes).clamp(1, height)
+}
+
+/// Bytes that are held at most while `height` rows of `row_bytes` are inflated.
+pub(super) fn held_bytes(row_bytes: usize, height: usize) -> u64 {
+    let buffer = WINDOW_BYTES + buffer_rows(row_bytes, height) * row_bytes;
+    (BUFFERS * buffer + WINDOW_BYTES + READ_BYTES) as u64
 }
 
 impl FilteredRows {

@@ -6,16 +6,21 @@ use crate::io::damage::{damaged, io_reason};
 use crate::io::samples::{DecodedWhole, Layout, Opened, SampleRows, Samples, bytes_mut, len};
 use crate::io::{input, limits, srgb};
 use crate::map::{HeightType, HeightsMut};
+use crate::stream::BUFFERS;
 use png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Reader, Transformations};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// Compressed bytes that are read from the file at once.
-pub(super) const READ_BYTES: usize = 256 << 10;
+pub(super) const READ_BYTES: usize = 64 << 10;
 
-/// Rows that are held at once, in the worst case: those that were inflated ahead, the last one and the next.
-const ROWS_HELD: u128 = 5;
+/// Rows that are held at once where they are inflated ahead: one in each buffer at least, the last one and the next.
+/// (Buffers for more rows have a fixed size and do not count.)
+const ROWS_AHEAD: u128 = BUFFERS as u128 + 2;
+
+/// Rows that `png` holds at once: four that it still keeps, the last one and the next.
+const ROWS_KEPT: u128 = 6;
 
 /// Room for what stands beside the rows, such as colour profiles.
 const METADATA_BYTES: usize = 64 << 20;
@@ -72,7 +77,7 @@ fn start(path: &Path, max_bytes: u64) -> Result<(Reader<BufReader<File>>, Layout
     let header = decoder.read_header_info().map_err(reason(path))?;
     let size = limits::size(path, header.width.into(), header.height.into())?;
     let row_bits = size.width() as u128 * header.bits_per_pixel() as u128;
-    let rows_at_once = if header.interlaced { size.height() as u128 } else { ROWS_HELD };
+    let rows_at_once = if header.interlaced { size.height() as u128 } else { ROWS_AHEAD };
     limits::check(path, size, row_bits * rows_at_once / 8, max_bytes)?;
     limits::check_deflated(path, size, row_bits.div_ceil(8) * size.height() as u128, stored)?;
     decoder.set_limits(Limits { bytes: METADATA_BYTES + size.width() * 8 });
@@ -90,6 +95,7 @@ fn start(path: &Path, max_bytes: u64) -> Result<(Reader<BufReader<File>>, Layout
         ColorType::Rgba => (3, true),
         ColorType::Indexed => return Err(damaged(path, "its palette is missing")),
     };
+    let rows_at_once = if reader.info().interlaced || is_plain(reader.info()) { rows_at_once } else { ROWS_KEPT };
     // Palettes, grey below 8 bits and transparent colours grow when they are decoded.
     let layout = Layout { size, depth, colours, alpha };
     limits::check(path, size, layout.row_bytes() as u128 * rows_at_once, max_bytes)?;
@@ -135,6 +141,10 @@ impl SampleRows for PngRows {
 
     fn last_row_is_near(&self) -> bool {
         false
+    }
+
+    fn held_bytes(&self) -> u64 {
+        ROWS_KEPT as u64 * self.layout.row_bytes() as u64 + 2 * READ_BYTES as u64
     }
 }
 

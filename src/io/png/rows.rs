@@ -101,6 +101,7 @@ impl SampleRows for PlainRows {
     }
 
     fn held_bytes(&self) -> u64 {
-        inflate::held_bytes(1 + self.layout.row_bytes()) + 2 * self.layout.row_bytes() as u64
+        let row = self.layout.row_bytes();
+        inflate::held_bytes(1 + row, self.layout.size.height()) + 2 * row as u64
     }
 }

@@ -31,12 +31,29 @@ const MOST_MATCHES: Coding = Coding::Matches(9);
 /// Bytes in the middle of a stripe, from which it is guessed whether matches pay.
 const SAMPLE_BYTES: usize = 16 << 10;
 
-/// Bytes of rows in a stripe, about. Few would cost a block's codes too often, many would keep threads waiting.
-const STRIPE_BYTES: usize = 512 << 10;
+impl Effort {
+    /// Bytes of filtered rows in a stripe, about: few keep memory and waiting short, but matches do not reach from one
+    /// stripe into another.
+    fn stripe_bytes(self) -> usize {
+        match self {
+            Self::Fast => 128 << 10,
+            Self::Balanced | Self::Small => 512 << 10,
+        }
+    }
 
-/// Rows in a stripe: a number that depends on nothing but their length, so that the file's bytes do so too.
-pub(super) fn stripe_rows(row_bytes: usize) -> usize {
-    (STRIPE_BYTES / row_bytes).max(1)
+    /// Rows in a stripe: a number that depends on nothing but their length, so that the file's bytes do so too.
+    pub fn stripe_rows(self, row_bytes: usize) -> usize {
+        (self.stripe_bytes() / (1 + row_bytes)).max(1)
+    }
+
+    /// Buffers of a stripe: its rows, and filtered; then two attempts, what zlib writes, and what it remembers. The only
+    /// attempt of the fast level takes the rows' place.
+    pub fn buffers(self) -> usize {
+        match self {
+            Self::Fast => 2,
+            Self::Balanced | Self::Small => 6,
+        }
+    }
 }
 
 /// A stripe on its way from rows to a piece of a zlib stream; its buffers serve the next one.
@@ -58,10 +75,13 @@ pub(super) struct Stripe {
 }
 
 impl Stripe {
-    /// Begins anew with rows of `row_bytes`, below the row `above` if that is known.
-    pub fn begin(&mut self, row_bytes: usize, texel_bytes: usize, above: Option<&[u8]>) {
+    /// Begins anew with up to `count` rows of `row_bytes`, below the row `above` if that is known.
+    pub fn begin(&mut self, count: usize, row_bytes: usize, texel_bytes: usize, above: Option<&[u8]>) {
         (self.row_bytes, self.texel_bytes, self.is_first) = (row_bytes, texel_bytes, above.is_none());
+        // What was written there is not needed any more.
+        self.best.exchange(&mut self.rows);
         self.rows.clear();
+        self.rows.reserve_exact((1 + count) * row_bytes);
         match above {
             Some(above) => self.rows.extend_from_slice(above),
             None => self.rows.resize(row_bytes, 0),
@@ -89,7 +109,10 @@ impl Stripe {
     pub fn encode(&mut self, effort: Effort) {
         self.choice = None;
         if effort == Effort::Fast {
-            return self.attempts(&CHOICES[..1], &LITERALS[..1]);
+            self.filter(CHOICES[0]);
+            // The rows have served: the result takes their room.
+            self.other.exchange(&mut self.rows);
+            return self.attempt(CHOICES[0], LITERALS[0]);
         }
         self.attempts(&CHOICES, &LITERALS);
         let smallest = self.choice.unwrap_or(CHOICES[0]);
@@ -111,6 +134,7 @@ impl Stripe {
 
     fn filter(&mut self, choice: Choice) {
         self.filtered.clear();
+        self.filtered.reserve_exact(self.count() * (1 + self.row_bytes));
         let rows = self.rows.chunks_exact(self.row_bytes);
         for (number, (row, above)) in rows.clone().skip(1).zip(rows).enumerate() {
             let choice = if number == 0 && self.is_first { Choice::Fixed(Filter::Sub) } else { choice };

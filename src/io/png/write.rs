@@ -9,7 +9,7 @@
 //! neither the threads nor the number of rows that come at once.
 
 use super::in_order::InOrder;
-use super::stripe::{Effort, Stripe, stripe_rows};
+use super::stripe::{Effort, Stripe};
 use super::zlib::{self, adler_of_both};
 use crate::error::{Error, Result};
 use crate::io::Compression;
@@ -42,8 +42,10 @@ struct PngEncoder {
     file: Output,
     layout: RowLayout,
     effort: Effort,
+    /// Rows of a stripe; the last one may have fewer.
+    stripe_rows: usize,
     first_row: Vec<u8>,
-    /// The stripe that is being filled; those on their way; one that is free.
+    /// The stripe that is being filled; those on their way; one that was written.
     stripe: Stripe,
     encoding: InOrder<Stripe>,
     free: Option<Stripe>,
@@ -88,14 +90,17 @@ pub(crate) fn create(
     let texel_bytes = samples * format.depth.bytes();
     let row_bytes = size.width() * texel_bytes;
     writer.write_chunk(IDAT, &vec![0; zlib::first_bytes(1 + row_bytes)]).map_err(reason(path))?;
+    // A small map needs no more than its rows.
+    let stripe_rows = effort.stripe_rows(row_bytes).min(size.height() - 1);
     let mut stripe = Stripe::default();
-    stripe.begin(row_bytes, texel_bytes, None);
+    stripe.begin(stripe_rows, row_bytes, texel_bytes, None);
     let encoder = PngEncoder {
         path: path.into(),
         writer,
         file: replacement.output()?,
         layout: RowLayout { channels: format.channels, depth: format.depth, row_bytes, texel_bytes },
         effort,
+        stripe_rows,
         first_row: Vec::new(),
         stripe,
         encoding: InOrder::new(move |stripe: &mut Stripe| stripe.encode(effort)),
@@ -130,11 +135,10 @@ fn bit_depth(path: &Path, format: TexelFormat) -> Result<BitDepth> {
 }
 
 impl RowEncoder for PngEncoder {
-    /// The first row, and stripes: the one that is filled, a free one, and those on their way; each as it came,
-    /// filtered, and deflated.
+    /// The first row, the one above a stripe, and stripes: the one that is filled and those on their way.
     fn held_bytes(&self, _: usize) -> u64 {
-        let stripes = self.most_waiting() + 2;
-        (2 * self.layout.row_bytes + stripes * 3 * (self.stripe_bytes() + self.layout.row_bytes)) as u64
+        let stripes = (self.most_waiting() + 1) * self.effort.buffers();
+        (3 * self.layout.row_bytes + stripes * (self.stripe_bytes() + self.layout.row_bytes)) as u64
     }
 
     fn takes_first_row_last(&self) -> bool {
@@ -147,7 +151,7 @@ impl RowEncoder for PngEncoder {
                 self.first_row = vec![NONE; 1 + self.layout.row_bytes];
                 self.layout.fill(&mut self.first_row[1..], codes);
             } else {
-                if self.stripe.count() == stripe_rows(self.layout.row_bytes) {
+                if self.stripe.count() == self.stripe_rows {
                     self.send_stripe()?;
                 }
                 self.layout.fill(self.stripe.next_row(), codes);
@@ -178,24 +182,25 @@ impl RowEncoder for PngEncoder {
 
 impl PngEncoder {
     fn stripe_bytes(&self) -> usize {
-        stripe_rows(self.layout.row_bytes) * self.layout.row_bytes
+        self.stripe_rows * (1 + self.layout.row_bytes)
     }
 
-    /// Stripes that may be on their way.
+    /// Stripes that may be on their way while another is filled: each thread has one.
     fn most_waiting(&self) -> usize {
-        (WAITING_BYTES / self.stripe_bytes()).clamp(1, rayon::current_num_threads() + 1)
+        (WAITING_BYTES / self.stripe_bytes().max(1)).clamp(1, rayon::current_num_threads())
     }
 
     /// Lets some thread encode the stripe, and goes on with the next one.
     fn send_stripe(&mut self) -> Result<()> {
-        let mut next = self.free.take().unwrap_or_default();
-        next.begin(self.layout.row_bytes, self.layout.texel_bytes, Some(self.stripe.last_row()));
-        self.encoding.push(std::mem::replace(&mut self.stripe, next));
+        let above = self.stripe.last_row().to_vec();
+        self.encoding.push(std::mem::take(&mut self.stripe));
         while self.encoding.len() > self.most_waiting()
             && let Some(stripe) = self.encoding.pop()
         {
             self.write_stripe(stripe)?;
         }
+        self.stripe = self.free.take().unwrap_or_default();
+        self.stripe.begin(self.stripe_rows, self.layout.row_bytes, self.layout.texel_bytes, Some(&above));
         Ok(())
     }
 

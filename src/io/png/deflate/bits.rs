@@ -27,8 +27,14 @@ impl BitWriter {
         (self.length, self.word, self.held) = (0, 0, 0);
     }
 
+    /// Forgets what was written, and goes on in other room; its own is left there.
+    pub fn exchange(&mut self, room: &mut Vec<u8>) {
+        self.clear();
+        std::mem::swap(&mut self.room, room);
+    }
+
     /// Makes room for `bytes` more, and for the word that the last of them may be a part of.
-    fn reserve(&mut self, bytes: usize) {
+    pub(super) fn reserve(&mut self, bytes: usize) {
         let wanted = self.length + bytes + size_of::<u64>();
         if self.room.len() < wanted {
             self.room.resize(wanted, 0);
@@ -37,7 +43,7 @@ impl BitWriter {
 
     /// Writes the lowest `count` bits of `value`, at most 48, whose others are zero.
     pub fn bits(&mut self, value: u64, count: u32) {
-        self.reserve(size_of::<u64>());
+        self.reserve(0);
         let mut rest = Rest { word: self.word, held: self.held, at: self.length };
         rest.put(value, count, &mut self.room);
         self.keep(rest);
@@ -48,9 +54,8 @@ impl BitWriter {
         self.bits(code.bits().into(), code.length());
     }
 
-    /// Writes the code of each byte.
+    /// Writes the code of each byte; there must be room for them.
     pub(super) fn literals(&mut self, bytes: &[u8], codes: &[Code; 256]) {
-        self.reserve((bytes.len() * LONGEST_CODE as usize).div_ceil(8) + size_of::<u64>());
         let mut rest = Rest { word: self.word, held: self.held, at: self.length };
         let mut fours = bytes.chunks_exact(4);
         for four in &mut fours {

@@ -20,22 +20,22 @@ impl Code {
     }
 }
 
-/// Codes that are no longer than [`LONGEST_CODE`] and waste nothing, for symbols of which at least two occur.
-pub(super) fn codes<const SYMBOLS: usize>(counts: &[u32; SYMBOLS]) -> [Code; SYMBOLS] {
-    canonical(&lengths(counts))
+/// Codes of at most `longest` bits that waste nothing, for symbols of which at least two occur.
+pub(super) fn codes<const SYMBOLS: usize>(counts: &[u32; SYMBOLS], longest: u32) -> [Code; SYMBOLS] {
+    canonical(&lengths(counts, longest))
 }
 
 /// The length of each symbol's code.
-fn lengths<const SYMBOLS: usize>(counts: &[u32; SYMBOLS]) -> [u32; SYMBOLS] {
+fn lengths<const SYMBOLS: usize>(counts: &[u32; SYMBOLS], longest: u32) -> [u32; SYMBOLS] {
     let mut rising: Vec<usize> = (0..SYMBOLS).filter(|symbol| counts[*symbol] > 0).collect();
     // A stable sort: the same codes everywhere.
     rising.sort_by_key(|symbol| counts[*symbol]);
     let mut lengths = [0; SYMBOLS];
     let weights: Vec<u64> = rising.iter().map(|symbol| counts[*symbol].into()).collect();
     for (symbol, depth) in rising.iter().zip(depths(weights)) {
-        lengths[*symbol] = depth.min(LONGEST_CODE);
+        lengths[*symbol] = depth.min(longest);
     }
-    fill(&mut lengths, &rising);
+    fill(&mut lengths, &rising, longest);
     lengths
 }
 
@@ -66,14 +66,14 @@ fn depths(mut weights: Vec<u64>) -> impl Iterator<Item = u32> {
 }
 
 /// Lengthens codes that were cut too short to be told apart, and shortens common ones as far as there is room.
-fn fill(lengths: &mut [u32], rising: &[usize]) {
+fn fill(lengths: &mut [u32], rising: &[usize], longest: u32) {
     // Kraft's sum, of which a code of n bits takes 2^-n; all of it is taken in the end.
-    let whole = 1 << LONGEST_CODE;
-    let share = |length: u32| 1 << (LONGEST_CODE - length);
+    let whole = 1 << longest;
+    let share = |length: u32| 1 << (longest - length);
     let mut taken: u32 = rising.iter().map(|symbol| share(lengths[*symbol])).sum();
     while taken > whole {
         // The least loss: the rarest among the longest that may grow.
-        let may_grow = rising.iter().rev().filter(|symbol| lengths[**symbol] < LONGEST_CODE);
+        let may_grow = rising.iter().rev().filter(|symbol| lengths[**symbol] < longest);
         let Some(symbol) = may_grow.max_by_key(|symbol| lengths[**symbol]) else { return };
         lengths[*symbol] += 1;
         taken -= share(lengths[*symbol]);
@@ -122,9 +122,9 @@ mod tests {
     #[test]
     fn lengths_are_huffmans() {
         let counts = [20, 18, 10, 10, 10, 6, 6, 4, 4, 4, 4, 3, 1];
-        let bits: u32 = counts.iter().zip(lengths(&counts)).map(|(count, length)| count * length).sum();
+        let bits: u32 = counts.iter().zip(lengths(&counts, LONGEST_CODE)).map(|(count, length)| count * length).sum();
         assert_eq!(bits, 342);
-        assert_eq!(lengths(&[0, 9, 0, 1]), [0, 1, 0, 1]);
+        assert_eq!(lengths(&[0, 9, 0, 1], LONGEST_CODE), [0, 1, 0, 1]);
     }
 
     /// Every code is short enough, and together they take all bit strings.
@@ -137,9 +137,12 @@ mod tests {
         };
         let doubling: [u32; 30] = std::array::from_fn(|n| 1 << n);
         let one_common: [u32; 286] = std::array::from_fn(|n| if n == 7 { 100_000 } else { 1 });
-        for lengths in [&lengths(&fibonacci)[..], &lengths(&doubling), &lengths(&one_common)] {
-            assert!(lengths.iter().all(|length| (1..=LONGEST_CODE).contains(length)), "{lengths:?}");
-            assert_eq!(lengths.iter().map(|length| 1 << (LONGEST_CODE - length)).sum::<u32>(), 1 << LONGEST_CODE);
+        for longest in [9, LONGEST_CODE] {
+            let few = lengths(&fibonacci, longest);
+            for lengths in [&few[..], &lengths(&doubling, longest), &lengths(&one_common, longest)] {
+                assert!(lengths.iter().all(|length| (1..=longest).contains(length)), "{lengths:?}");
+                assert_eq!(lengths.iter().map(|length| 1 << (longest - length)).sum::<u32>(), 1 << longest);
+            }
         }
     }
 }

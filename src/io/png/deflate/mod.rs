@@ -2,35 +2,35 @@
 //! with all matches.
 //!
 //! A filtered map has hardly anything else that repeats: searching for matches takes most of the time of other
-//! encoders and wins nothing, but where it is nearly flat (`benches/png` has the figures). No crate does just this: `fdeflate` is as fast, but its
-//! codes are fixed, which costs 7 to 14 % of the size, and the Huffman-only strategy of zlib takes four times as long.
+//! encoders and wins nothing, but where it is nearly flat. No crate does just this (`benches/png` has the figures): the
+//! codes of `fdeflate` are fixed, which costs size, and the Huffman-only strategy of zlib takes several times as long.
 //! And the stripes of an image, which several threads deflate, must join: every call here ends on a byte's border with
 //! a block that is not the last, where `fdeflate` and libdeflate end the whole stream.
 
 mod bits;
 mod codes;
+mod header;
 mod matches;
 mod runs;
 
 pub(super) use bits::BitWriter;
 
+use bits::LONGEST_CODE;
 use codes::{Code, codes};
+use header::Header;
 use runs::{Length, runs_of_zeros};
-
-/// Bytes that share codes, about: fewer follow the map more closely, more spend less on codes.
-pub(super) const LONG_BLOCK: usize = 128 << 10;
-pub(super) const SHORT_BLOCK: usize = 32 << 10;
 
 /// The most bytes of a stored block, and the bytes before them.
 pub(super) const STORED_MOST: usize = 0xffff;
 pub(super) const STORED_HEADER: usize = 5;
 
+/// Bytes that share codes, about: fewer follow the map more closely, more spend less on codes and their making.
+pub(super) const LONG_BLOCK: usize = STORED_MOST;
+pub(super) const SHORT_BLOCK: usize = 16 << 10;
+
 /// Literals, the end of a block, and the lengths of matches (RFC 1951, section 3.2.5).
 const SYMBOLS: usize = 286;
 const END: usize = 256;
-
-/// Bits of a block's header as it is written here.
-const HEADER_BITS: usize = 3 + 5 + 5 + 4 + 19 * 3 + (SYMBOLS + 1) * 4;
 
 /// What repeats, and what codes are made for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,13 +65,16 @@ fn write_block(block: &[u8], out: &mut BitWriter) {
         run.lengths().for_each(|length| counts[length.symbol] += 1);
     }
     counts[END] = 1;
-    let codes = codes(&counts);
+    let codes = codes(&counts, LONGEST_CODE);
+    let header = Header::new(&codes);
     let extra: usize = runs.iter().flat_map(|run| run.lengths()).map(|length| length.extra_bits as usize + 1).sum();
     let coded: usize = counts.iter().zip(&codes).map(|(count, code)| *count as usize * code.length() as usize).sum();
-    if (HEADER_BITS + coded + extra).div_ceil(8) > block.len() + STORED_HEADER * block.len().div_ceil(STORED_MOST) {
+    let bytes = (header.bits() + coded + extra).div_ceil(8);
+    if bytes > block.len() + STORED_HEADER * block.len().div_ceil(STORED_MOST) {
         return block.chunks(STORED_MOST).for_each(|piece| write_stored(piece, out));
     }
-    write_header(&codes, out);
+    out.reserve(bytes + STORED_HEADER);
+    header.write(out);
     let literals: &[Code; 256] = codes.first_chunk().expect("286 codes");
     let mut at = 0;
     for run in &runs {
@@ -93,22 +96,6 @@ fn count_bytes(block: &[u8]) -> [u32; SYMBOLS] {
     }
     fours.remainder().iter().for_each(|byte| places[0][usize::from(*byte)] += 1);
     std::array::from_fn(|symbol| if symbol < END { places.iter().map(|counts| counts[symbol]).sum() } else { 0 })
-}
-
-/// The header of a block with codes of its own (RFC 1951, section 3.2.7), the lengths of the codes in four bits each.
-fn write_header(codes: &[Code; SYMBOLS], out: &mut BitWriter) {
-    out.bits(0b100, 3);
-    out.bits(SYMBOLS as u64 - 257, 5);
-    out.bits(0, 5); // one distance
-    out.bits(19 - 4, 4);
-    // The codes of code lengths: four bits for 0 to 15, none for 16 to 18, which repeat lengths and stand first.
-    for place in 0..19 {
-        out.bits(if place < 3 { 0 } else { 4 }, 3);
-    }
-    let distance = 1;
-    for length in codes.iter().map(|code| code.length()).chain([distance]) {
-        out.bits((length.reverse_bits() >> 28).into(), 4);
-    }
 }
 
 /// A match of the byte before.

@@ -77,10 +77,10 @@ fn zeros_vanish_and_noise_hardly_grows() {
 }
 
 /// Where every probability is a power of 1/2 the size is the entropy: n leading zeros come with 2^-(n + 1), two bits
-/// on average, and 64 bytes are the standard deviation of this many.
+/// on average, and 45 bytes are the standard deviation of this many. A header has less than 40 bytes.
 #[test]
 fn codes_are_as_short_as_the_entropy_says() {
     let bytes: Vec<u8> = noise(LONG_BLOCK).iter().map(|byte| byte.leading_zeros() as u8 + 1).collect();
     let (size, entropy) = (deflated(&bytes).len(), LONG_BLOCK / 4);
-    assert!((entropy - 300..entropy + HEADER_BITS / 8 + 300).contains(&size), "{size}");
+    assert!((entropy - 300..entropy + 40 + 300).contains(&size), "{size}");
 }
