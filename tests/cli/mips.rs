@@ -142,7 +142,7 @@ fn what_has_no_levels_is_told_before_anything_is_baked() {
         ),
         (
             normal(&["n.ktx2", "--mips", "--roughness", "r.ktx2", "--base-roughness", "1.5"]),
-            "--base-roughness is 3/2: it must be from 0 to 1",
+            "--base-roughness is 1.5: it must be from 0 to 1",
         ),
         (
             normal(&["n.ktx2", "--mips", "--roughness", "r.ktx2", "--roughness-bits", "32f"]),

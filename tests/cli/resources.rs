@@ -168,10 +168,9 @@ fn an_interrupt_reaches_those_that_wait_for_memory() {
     super::support::Run::from(child.wait_with_output().unwrap()).ends(130);
     assert_eq!(folder.files("out"), [""; 0]);
     let report = folder.json("r.json");
-    let opened = |file: &&serde_json::Value| !file["milliseconds"].is_null();
-    let files = report["files"].as_array().unwrap();
-    assert_eq!(report["totals"]["stopped"].as_u64().unwrap() as usize, FILES, "all had begun, and one had memory");
-    assert_eq!(files.iter().filter(opened).count(), FILES);
+    let count = |key: &str| report["totals"][key].as_u64().unwrap() as usize;
+    assert_eq!((count("stopped") + count("not_begun"), count("failed")), (FILES, 0), "{}", report["totals"]);
+    assert!(count("stopped") > 0, "{}", report["totals"]);
 }
 
 /// The cores on which the threads of a process may run, as the system writes them.
