@@ -293,7 +293,7 @@ pub enum CheckPlan {
 /// What may differ from file to file in a folder.
 #[derive(Args, Debug, Clone, Default, PartialEq)]
 pub struct PerFile {
-    /// Maps to bake: normal, parallax or both, with roughness for that of mip levels, as normal,roughness; none leaves
+    /// Maps to bake: normal, parallax or normal,parallax, with roughness for that of mip levels, as normal,roughness; none leaves
     /// the file out [default: normal]
     #[arg(long, value_delimiter = ',', value_parser = choice::<MapChoice>(MapChoice::NAMES), help_heading = "Files")]
     #[arg(hide_possible_values = true)]

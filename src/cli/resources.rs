@@ -35,7 +35,8 @@ impl Resources {
         let refused = |reason: String| Error::Threads { reason };
         #[cfg(target_os = "linux")]
         keep_to_cores(threads.get()).map_err(|error| refused(error.to_string()))?;
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global();
+        let cores = std::thread::available_parallelism().unwrap_or(threads);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.min(cores).get()).build_global();
         pool.map_err(|error| refused(error.to_string()))
     }
 
@@ -50,7 +51,8 @@ impl Resources {
         let taken = resident + BESIDE_ROWS;
         if bytes <= taken {
             let range = format!("above {}M, which the program takes before any file", taken.div_ceil(1 << 20));
-            return Err(Error::Parameter { parameter: "memory", value: bytes.to_string(), range });
+            let value = format!("{}M", bytes.div_ceil(1 << 20));
+            return Err(Error::Parameter { parameter: "memory", value, range });
         }
         Ok(Monitor::with_memory(bytes, taken))
     }

@@ -155,10 +155,10 @@ impl Flat<'_> {
     }
 }
 
-/// Runs `job` on `threads`, or those of the process: on one of them, so that its many small parts need no waking.
+/// Runs `job` on `threads`, or where it is.
 fn on<T: Send>(threads: Option<&ThreadPool>, job: impl FnOnce() -> T + Send) -> T {
     match threads {
         Some(threads) => threads.install(job),
-        None => rayon::scope(|_| job()),
+        None => job(),
     }
 }

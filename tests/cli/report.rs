@@ -113,7 +113,7 @@ fn what_textures_and_tiles_were_asked_for_is_reported() {
     folder.grey8("tex/t_1_0_height.png", 4, 4, bumps8);
     std::fs::remove_file(folder.path("tex/a_height.png")).unwrap();
     let found = options(&["--neighbours", "t_{x}_{y}_height.png", "--edge", "clamp"]);
-    assert_eq!(found["neighbours"], "edge, edge, edge; edge, here, tex/t_1_0_height.png; edge, edge, edge");
+    assert_eq!(found["neighbours"], "edge, edge, edge; edge, here, t_1_0_height.png; edge, edge, edge");
 }
 
 #[test]

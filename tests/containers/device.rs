@@ -12,12 +12,12 @@ const LOAD: &str = "
 @vertex fn cover(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
     return vec4<f32>(f32(corner & 1u) * 4.0 - 1.0, f32(corner & 2u) * 2.0 - 1.0, 0.0, 1.0);
 }
-@fragment fn load(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
-    return textureLoad(source, vec2<i32>(at.xy), 0);
+@fragment fn load(@builtin(position) at: vec4<f32>) -> @location(0) vec4<u32> {
+    return bitcast<vec4<u32>>(textureLoad(source, vec2<i32>(at.xy), 0));
 }";
 
-/// What is drawn into: floats as they are.
-const DRAWN: Format = Format::Rgba32Float;
+/// What is drawn into: the bits of floats, which OpenGL draws where it draws no floats.
+const DRAWN: Format = Format::Rgba32Uint;
 
 /// A device, by the name of its baker.
 pub struct Gpu {
@@ -175,7 +175,8 @@ impl Gpu {
             layout: &pipeline.get_bind_group_layout(0),
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(source) }],
         });
-        let nothing = wgpu::Color { r: f64::NAN, g: f64::NAN, b: f64::NAN, a: f64::NAN };
+        let nan = f64::from(f32::NAN.to_bits());
+        let nothing = wgpu::Color { r: nan, g: nan, b: nan, a: nan };
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {

@@ -80,7 +80,7 @@ pub fn ktx2(bytes: &[u8], made: &Made) -> Parsed {
     let dfd: Vec<u32> = (0..descriptor(kind).len()).map(|word| u32_at(bytes, dfd_at + 4 * word)).collect();
     equal("descriptor", dfd, descriptor(kind))?;
     let kvd_at = dfd_at + 4 * descriptor(kind).len();
-    let writer = concat!("KTXwriter\0texbake ", env!("CARGO_PKG_VERSION"), "\0");
+    let writer = "KTXwriter\0texbake\0";
     let mut metadata = b"\x12\0\0\0KTXorientation\0rd\0\0\0".to_vec();
     metadata.extend((writer.len() as u32).to_le_bytes());
     metadata.extend(writer.as_bytes());

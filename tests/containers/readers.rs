@@ -69,7 +69,7 @@ fn ktx_parse_agrees(found: &Value, made: &Made) -> bool {
     let texts = ["orientation", "writer"].map(|name| found[name].as_str().unwrap().trim_end_matches('\0').to_owned());
     found["header"] == header
         && fields == [model, 0, 1, 0]
-        && texts == ["rd".to_owned(), format!("texbake {}", env!("CARGO_PKG_VERSION"))]
+        && texts == ["rd".to_owned(), "texbake".to_owned()]
         && stored == expected
 }
 

@@ -9,8 +9,7 @@ use std::path::Path;
 
 /// Keys in the order of their code points, values with the null that ends them (section 5): the first texel is the
 /// upper left one, and who wrote the file.
-const METADATA: [(&str, &str); 2] =
-    [("KTXorientation", "rd\0"), ("KTXwriter", concat!("texbake ", env!("CARGO_PKG_VERSION"), "\0"))];
+const METADATA: [(&str, &str); 2] = [("KTXorientation", "rd\0"), ("KTXwriter", "texbake\0")];
 
 /// Gives the levels their places, and writes all that stands before them: header, level index, data format descriptor,
 /// and keys and values.
