@@ -256,7 +256,7 @@ fn the_bytes_are_those_of_every_machine() {
     let bumps = |x: usize, y: usize, channel: usize| ((x * x + 3 * y * y) >> (6 + channel)) as u16 ^ (x & y) as u16;
     let picture = Picture::new([400, 150], 3, Depth::Bits8, bumps);
     let found = LEVELS.map(|compression| crc32fast::hash(&picture.file(compression)));
-    assert_eq!(found, [3_486_354_769, 3_534_645_462, 595_024_120]);
+    assert_eq!(found, [3_217_503_341, 2_003_741_595, 988_685_413]);
 }
 
 #[test]
@@ -273,13 +273,17 @@ fn slower_levels_are_smaller() {
         ("xy", Picture::waves([512, 100], 2, Depth::Bits8, 0.2, 2)),
         ("noise", Picture::noise([512, 100], 3, Depth::Bits8)),
     ];
+    // Row 0 is stored, behind the number of its filter.
+    let stored = 1 + 512 * 3;
     for (name, map) in maps {
         let [fast, balanced, small] = LEVELS.map(|compression| map.file(compression).len());
         println!("{name}: {} fast {fast} balanced {balanced} small {small}", map.samples().len());
         assert!(small <= balanced && balanced <= fast, "{name}: {small} {balanced} {fast}");
         // What repeats is found, and noise grows by little more than the headers of its blocks.
         match name {
-            "flat" => assert!(small < balanced && fast * 150 < map.samples().len(), "{small} {balanced} {fast}"),
+            "flat" => {
+                assert!(small < balanced && (fast - stored) * 150 < map.samples().len(), "{small} {balanced} {fast}")
+            }
             "nearly flat" => assert!(small * 10 < fast * 9, "{small} {fast}"),
             "noise" => assert!(fast < map.samples().len() * 1001 / 1000 + 600, "{fast}"),
             _ => assert!(fast < map.samples().len()),
