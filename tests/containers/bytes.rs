@@ -25,14 +25,14 @@ fn two_levels_of_rg8_in_ktx2() {
     let expected = hex(
         // Identifier; VK_FORMAT_R8G8_UNORM, type size 1, 2 x 1 x 0, 0 layers, 1 face, 2 levels, no supercompression.
         "ab4b5458 203230bb 0d0a1a0a 10000000 01000000 02000000 01000000 00000000 00000000 01000000 02000000 00000000
-        80000000 3c000000 bc000000 34000000 00000000 00000000 00000000 00000000
-        f400000000000000 0400000000000000 0400000000000000
-        f000000000000000 0200000000000000 0200000000000000
+        80000000 3c000000 bc000000 30000000 00000000 00000000 00000000 00000000
+        f000000000000000 0400000000000000 0400000000000000
+        ec00000000000000 0200000000000000 0200000000000000
         3c000000 00000000 02003800 01000100 00000000 02000000 00000000
         00000700 00000000 00000000 ff000000 08000701 00000000 00000000 ff000000",
     );
-    let writer = "KTXwriter\0texbake\0";
-    let metadata = [&b"\x12\0\0\0KTXorientation\0rd\0\0\0\x18\0\0\0"[..], writer.as_bytes()].concat();
+    let writer = "KTXwriter\0texbake\0\0\0";
+    let metadata = [&b"\x12\0\0\0KTXorientation\0rd\0\0\0\x12\0\0\0"[..], writer.as_bytes()].concat();
     let texels = hex("0506 0000 01020304");
     assert_eq!(std::fs::read(&path).unwrap(), [&expected[..], &metadata, &texels].concat());
 }

@@ -80,7 +80,8 @@ fn a_tiff_of_one_packed_strip() {
     };
     let lzw =
         |bytes: &[u8]| weezl::encode::Encoder::with_tiff_size_switch(weezl::BitOrder::Msb, 8).encode(bytes).unwrap();
-    let packings: [(u16, &dyn Fn(&[u8]) -> Vec<u8>); 2] = [(8, &deflate), (5, &lzw)];
+    type Pack<'a> = &'a dyn Fn(&[u8]) -> Vec<u8>;
+    let packings: [(u16, Pack<'_>); 2] = [(8, &deflate), (5, &lzw)];
     for (compression, pack) in packings {
         assert_does_not_grow([256, 2048], 1, |peaks| {
             let tiff = Tiff::grey(WIDTH as u32, peaks.size[1] as u32, 8, 1, vec![pack(&bytes_of(peaks))]);
