@@ -316,8 +316,6 @@ check_tests "tests" cargo test --release --no-fail-fast
 check "kernel costs" cargo bench --bench gpu_cost
 check "dependencies" check_dependencies
 
-printf '\nnot run, since it takes minutes: a raw map of 65536 x 65536 texels; run it with\n'
-echo '    cargo test --release --test main a_raw_map_of_full_size -- --ignored'
 if [ $failed -gt 0 ]; then
     printf '\nfailed:\n'
     printf '  %s\n' "${failures[@]}"

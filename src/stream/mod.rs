@@ -25,12 +25,15 @@ pub(crate) use channel::{BUFFERS, Filling};
 pub(crate) use layers::{LayerBand, LayerBands, LayerReader, LayerSource, MapLayers};
 pub(crate) use memory::{MapBands, MapSink};
 pub use monitor::Monitor;
+#[cfg(feature = "cli")]
 pub(crate) use monitor::Stop;
 pub(crate) use normals::read_normals_watched;
 pub(crate) use normals::{HeightLayer, MaskLayer, NormalLayer, Tiled, check_components, height_codes, rounded_mask};
 pub use normals::{NormalSource, read_normals};
 pub(crate) use order::RowOrder;
-pub(crate) use reader::{BandReader, piece_rows, read_map_watched};
+#[cfg(feature = "cli")]
+pub(crate) use reader::piece_rows;
+pub(crate) use reader::{BandReader, read_map_watched};
 pub use reader::{RowSource, read_map};
 pub(crate) use writer::{CodeSink, CodeWriter};
 pub use writer::{LevelSink, RowSink};

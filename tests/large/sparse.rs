@@ -46,7 +46,6 @@ fn a_sparse_raw_map() {
 }
 
 #[test]
-#[ignore = "takes minutes"]
 fn a_raw_map_of_full_size() {
     bake_raw(&Folder::new(), &Peaks::new(WIDTH, WIDTH));
 }

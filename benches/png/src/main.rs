@@ -5,10 +5,12 @@
 #[macro_use]
 #[path = "../../../src/vectorised.rs"]
 mod vectorised;
+mod io;
 mod production;
 
 use cpu_time::ProcessTime;
-use production::{Level, filtered};
+use io::Compression;
+use production::filtered;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -209,10 +211,10 @@ fn idat(file: &[u8]) -> Vec<u8> {
 fn encoding(title: &str, image: &Image, rounds: usize) {
     let (one, two) = (&threads(1), &threads(2));
     let mut cases = vec![
-        case("texbake fast", move || production::encode(image, Level::Fast, one)),
-        case("texbake balanced", move || production::encode(image, Level::Balanced, one)),
-        case("texbake small", move || production::encode(image, Level::Small, one)),
-        case("texbake fast, 2 threads", move || production::encode(image, Level::Fast, two)),
+        case("texbake fast", move || production::encode(image, Compression::Fast, one)),
+        case("texbake balanced", move || production::encode(image, Compression::Balanced, one)),
+        case("texbake small", move || production::encode(image, Compression::Small, one)),
+        case("texbake fast, 2 threads", move || production::encode(image, Compression::Fast, two)),
         case("`png` Fast (fdeflate), Paeth", || encode_png(image, png::Compression::Fast, png::Filter::Paeth).len()),
         case("`png` Fast (fdeflate), its own filter", || encode_png(image, png::Compression::Fast, None).len()),
         case("`png` Balanced, adaptive (zlib-rs 6)", || {

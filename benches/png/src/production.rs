@@ -9,17 +9,10 @@ mod filter;
 mod stripe;
 
 use crate::Image;
+use crate::io::Compression;
 use filter::Filter;
 use rayon::prelude::*;
 use stripe::Stripe;
-
-/// The levels of `--compression`.
-#[derive(Clone, Copy, Debug)]
-pub enum Level {
-    Fast,
-    Balanced,
-    Small,
-}
 
 /// Rows below `above`, filtered by Paeth: what every encoder gets.
 pub fn filtered(rows: &[u8], above: Option<&[u8]>, row: usize, bpp: usize) -> Vec<u8> {
@@ -31,21 +24,16 @@ pub fn filtered(rows: &[u8], above: Option<&[u8]>, row: usize, bpp: usize) -> Ve
 }
 
 /// Bytes of the stripes of an image, which the threads of `pool` filter and deflate.
-pub fn encode(image: &Image, level: Level, pool: &rayon::ThreadPool) -> usize {
-    let effort = match level {
-        Level::Fast => stripe::Effort::Fast,
-        Level::Balanced => stripe::Effort::Balanced,
-        Level::Small => stripe::Effort::Small,
-    };
+pub fn encode(image: &Image, compression: Compression, pool: &rayon::ThreadPool) -> usize {
     let row = image.row();
-    let rows = effort.stripe_rows(row);
+    let rows = compression.stripe_rows(row);
     let stripes: Vec<&[u8]> = image.samples.chunks(rows * row).collect();
     let size = |number: usize| {
         let above = number.checked_sub(1).map(|before| &stripes[before][stripes[before].len() - row..]);
         let mut stripe = Stripe::default();
         stripe.begin(rows, row, image.bpp, above);
         stripes[number].chunks_exact(row).for_each(|samples| stripe.next_row().copy_from_slice(samples));
-        stripe.encode(effort);
+        stripe.encode(compression);
         // The checksum of the chunk that would hold the stripe.
         std::hint::black_box(crc32fast::hash(stripe.deflated()));
         stripe.deflated().len()

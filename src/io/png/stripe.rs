@@ -1,21 +1,10 @@
 //! Stripes: rows of an image that one thread filters and deflates by itself.
 //!
-//! A slower [`Effort`] tries all that a faster one does, and the smallest is kept: it makes no stripe larger.
+//! A slower [`Compression`] tries all that a faster one does, and the smallest is kept: it makes no stripe larger.
 
 use super::deflate::{BitWriter, Coding, LONG_BLOCK, SHORT_BLOCK, deflate};
 use super::filter::{Choice, Filter};
-
-/// How much is tried to make a stripe small.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) enum Effort {
-    /// One filter, and codes.
-    #[default]
-    Fast,
-    /// Several filters, and matches where a sample says that they pay.
-    Balanced,
-    /// Matches after every filter.
-    Small,
-}
+use crate::io::Compression;
 
 /// The filters that are tried. After the first, those of smooth maps: Paeth's guesses are best where maps are nearly
 /// flat or have 16 bits.
@@ -31,7 +20,7 @@ const MOST_MATCHES: Coding = Coding::Matches(9);
 /// Bytes in the middle of a stripe, from which it is guessed whether matches pay.
 const SAMPLE_BYTES: usize = 16 << 10;
 
-impl Effort {
+impl Compression {
     /// Bytes of filtered rows in a stripe, about: few keep memory and waiting short, but matches do not reach from one
     /// stripe into another.
     fn stripe_bytes(self) -> usize {
@@ -42,13 +31,13 @@ impl Effort {
     }
 
     /// Rows in a stripe: a number that depends on nothing but their length, so that the file's bytes do so too.
-    pub fn stripe_rows(self, row_bytes: usize) -> usize {
+    pub(super) fn stripe_rows(self, row_bytes: usize) -> usize {
         (self.stripe_bytes() / (1 + row_bytes)).max(1)
     }
 
     /// Buffers of a stripe: its rows, and filtered; then two attempts, what zlib writes, and what it remembers. The only
     /// attempt of the fast level takes the rows' place.
-    pub fn buffers(self) -> usize {
+    pub(super) fn buffers(self) -> usize {
         match self {
             Self::Fast => 2,
             Self::Balanced | Self::Small => 6,
@@ -105,10 +94,11 @@ impl Stripe {
         &self.rows[self.rows.len() - self.row_bytes..]
     }
 
-    /// Filters and deflates the rows.
-    pub fn encode(&mut self, effort: Effort) {
+    /// Filters and deflates the rows: `Fast` by one filter, and codes; `Balanced` by several, and matches where a sample
+    /// says that they pay; `Small` with matches after every filter too.
+    pub fn encode(&mut self, compression: Compression) {
         self.choice = None;
-        if effort == Effort::Fast {
+        if compression == Compression::Fast {
             self.filter(CHOICES[0]);
             // The rows have served: the result takes their room.
             self.other.exchange(&mut self.rows);
@@ -120,7 +110,7 @@ impl Stripe {
         if self.matches_pay() {
             self.attempt(smallest, MATCHES);
         }
-        if effort == Effort::Small {
+        if compression == Compression::Small {
             self.attempts(&CHOICES, &[MOST_MATCHES]);
         }
     }

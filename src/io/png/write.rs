@@ -9,7 +9,7 @@
 //! neither the threads nor the number of rows that come at once.
 
 use super::in_order::InOrder;
-use super::stripe::{Effort, Stripe};
+use super::stripe::Stripe;
 use super::zlib::{self, adler_of_both};
 use crate::error::{Error, Result};
 use crate::io::Compression;
@@ -40,7 +40,7 @@ struct PngEncoder {
     /// The same file, to fill the room that was left.
     file: Output,
     layout: RowLayout,
-    effort: Effort,
+    compression: Compression,
     /// Rows of a stripe; the last one may have fewer.
     stripe_rows: usize,
     first_row: Vec<u8>,
@@ -65,11 +65,6 @@ struct RowLayout {
 /// Creates a PNG with 8 or 16 bits: grey for one channel, else RGB; xy maps leave blue 0, since PNG's only two-channel
 /// type means transparency.
 pub(crate) fn create(path: &Path, size: Size, format: TexelFormat, compression: Compression) -> Result<Box<FileSink>> {
-    let effort = match compression {
-        Compression::Fast => Effort::Fast,
-        Compression::Balanced => Effort::Balanced,
-        Compression::Small => Effort::Small,
-    };
     let depth = bit_depth(path, format)?;
     let replacement = Replacement::create(path)?;
     let [width, height] = [size.width(), size.height()].map(|side| side as u32);
@@ -85,7 +80,7 @@ pub(crate) fn create(path: &Path, size: Size, format: TexelFormat, compression: 
     let row_bytes = size.width() * texel_bytes;
     writer.write_chunk(IDAT, &vec![0; zlib::first_bytes(1 + row_bytes)]).map_err(reason(path))?;
     // A small map needs no more than its rows.
-    let stripe_rows = effort.stripe_rows(row_bytes).min(size.height() - 1);
+    let stripe_rows = compression.stripe_rows(row_bytes).min(size.height() - 1);
     let mut stripe = Stripe::default();
     stripe.begin(stripe_rows, row_bytes, texel_bytes, None);
     let encoder = PngEncoder {
@@ -93,11 +88,11 @@ pub(crate) fn create(path: &Path, size: Size, format: TexelFormat, compression: 
         writer,
         file: replacement.output()?,
         layout: RowLayout { channels: format.channels, depth: format.depth, row_bytes, texel_bytes },
-        effort,
+        compression,
         stripe_rows,
         first_row: Vec::new(),
         stripe,
-        encoding: InOrder::new(move |stripe: &mut Stripe| stripe.encode(effort)),
+        encoding: InOrder::new(move |stripe: &mut Stripe| stripe.encode(compression)),
         free: None,
         checksum: 1, // of no bytes
         bytes: 0,
@@ -131,7 +126,7 @@ fn bit_depth(path: &Path, format: TexelFormat) -> Result<BitDepth> {
 impl RowEncoder for PngEncoder {
     /// The first row, the one above a stripe, and stripes: the one that is filled and those on their way.
     fn held_bytes(&self, _: usize) -> u64 {
-        let stripes = (self.most_waiting() + 1) * self.effort.buffers();
+        let stripes = (self.most_waiting() + 1) * self.compression.buffers();
         (3 * self.layout.row_bytes + stripes * (self.stripe_bytes() + self.layout.row_bytes)) as u64
     }
 
@@ -157,7 +152,7 @@ impl RowEncoder for PngEncoder {
     fn finish(mut self: Box<Self>) -> Result<()> {
         // Meanwhile other threads have the stripes before it; a small map needs none.
         let mut last = std::mem::take(&mut self.stripe);
-        last.encode(self.effort);
+        last.encode(self.compression);
         while let Some(stripe) = self.encoding.pop() {
             self.write_stripe(stripe)?;
         }
