@@ -5,7 +5,7 @@ pub mod cpu;
 pub mod gpu;
 
 use crate::error::Result;
-use crate::map::CodesMut;
+use crate::map::{CodesMut, TexelFormat};
 use crate::ops::bake::BakePlan;
 use crate::ops::blend::BlendPlan;
 use crate::ops::parallax::ParallaxPlan;
@@ -90,8 +90,9 @@ pub(crate) struct RowBytes {
 impl RowBytes {
     /// Of a bake.
     pub fn of_bake(plan: &BakePlan) -> Self {
-        let width = plan.size.width();
-        Self { read: width * plan.height_type.bytes(), written: width * plan.texel_bytes() }
+        let (width, formats) = (plan.size.width(), plan.formats());
+        let texel_bytes: usize = formats.iter().map(TexelFormat::bytes).sum();
+        Self { read: width * plan.height_type.bytes(), written: width * texel_bytes }
     }
 
     /// Of a blend.

@@ -1,19 +1,16 @@
 //! Height maps into normal and parallax maps.
 
-use super::memory::{beside_bytes, job_bytes};
-use super::write::{as_dyn, whole_sink, write_watched};
+use super::memory::{job_bytes, level_bytes};
+use super::write::{WatchedRows, finish, whole_sink};
 use super::{Baker, Ran};
 use crate::backend::RowBytes;
 use crate::error::{Error, Result};
 use crate::exact::AxisScale;
-use crate::map::{
-    CodesMut, Edge, HeightMap, HeightType, Maps, NormalMap, ParallaxMap, RoughnessMap, Size, TexelFormat,
-};
-use crate::mips::{Beside, LevelsOut, RoughnessOut, bake_with_levels};
+use crate::map::{CodesMut, Edge, HeightMap, HeightType, Maps, NormalMap, ParallaxMap, RoughnessMap, Size};
+use crate::mips::{Bake, MapSinks};
 use crate::ops::bake::{BakeOptions, BakePlan, NormalOptions, ParallaxOptions};
 use crate::stream::{
-    BandReader, CodeSink, HeightBands, HeightRows, MapBands, MapSink, Monitor, RowOrder, RowSource, RowsOut,
-    read_map_watched,
+    BandReader, CodeWriter, HeightRows, MapBands, MapOut, Monitor, RowOrder, RowSource, RowsOut, read_map_watched,
 };
 
 /// How a bake ran.
@@ -107,25 +104,19 @@ impl Baker {
     /// not of its format's depth and the height map's size.
     pub fn bake_into(&self, heights: &HeightMap, options: &BakeOptions, maps: Maps<CodesMut<'_>>) -> Result<Baked> {
         let plan = BakePlan::new(options, heights.size(), heights.height_type())?;
-        check_maps(options, &maps)?;
-        let mut maps = maps.into_vec();
-        let formats = formats(&plan, options);
-        for (codes, format) in maps.iter().zip(&formats) {
-            format.check_codes(plan.size, codes.len(), codes.depth())?;
-        }
+        let mut maps = maps.pair(plan.formats())?;
+        maps.iter().try_for_each(|(codes, format)| format.check_codes(plan.size, codes.len(), codes.depth()))?;
         let (ran, ()) = self.run(|backend| {
+            let mut sinks = maps.as_mut().map(|(codes, format)| whole_sink(codes, *format, plan.size));
+            let sinks = sinks.as_mut().map(|largest| MapSinks { largest, levels: None });
             let mut bands = MapBands::new(heights, plan.edges.y, backend.map_band_rows(RowBytes::of_bake(&plan)));
-            let whole = maps.iter_mut().zip(&formats).map(|(codes, format)| whole_sink(codes, *format, plan.size));
-            let mut sinks: Vec<MapSink<'_>> = whole.collect();
-            let mut sinks = as_dyn(&mut sinks);
-            let (sinks, beside) = beside(options, &mut sinks, Vec::new());
-            bake_with_levels(backend, &plan, RowOrder::FromTop, &mut bands, sinks, beside)
+            Bake { backend, plan: &plan, order: RowOrder::FromTop }.run(&mut bands, sinks)
         })?;
         Ok(Baked { ran, size: plan.size, height_type: plan.height_type, scale: plan.scale })
     }
 
     /// Bakes rows from `open` into rows of a normal map for `create` while they are read and written: as
-    /// [`Baker::bake_rows`] with this one map.
+    /// [`Baker::bake_rows`] with this one map, of one level.
     ///
     /// # Errors
     /// As [`Baker::bake_rows`].
@@ -136,7 +127,7 @@ impl Baker {
         options: &NormalOptions,
         monitor: &Monitor,
     ) -> Result<Baked> {
-        let create = |size| Ok(Maps { normal: Some(create(size)?), ..Maps::default() });
+        let create = |size| Ok(Maps { normal: Some(create(size)?.into()), ..Maps::default() });
         self.bake_rows(open, &create, &(*options).into(), monitor)
     }
 
@@ -149,10 +140,10 @@ impl Baker {
     /// no more than 64 MiB, else decoded twice. What the source itself holds comes on top:
     /// [`crate::io::open_heights`] decodes some formats whole.
     ///
-    /// Where a sink has [`levels`](crate::stream::RowSink::levels), the smaller mip levels of its map are baked too, as
+    /// Where there are [`levels`](MapOut::levels), the smaller mip levels of the map are baked too, as
     /// [`Baker::bake_levels`] does.
     ///
-    /// `create` makes a sink for each map that the options ask for. Both may be called again if a GPU fails and the
+    /// `create` makes sinks for each map that the options ask for. Both may be called again if a GPU fails and the
     /// job moves to the CPU; no row of the failed try is kept.
     ///
     /// # Errors
@@ -161,86 +152,56 @@ impl Baker {
     pub fn bake_rows(
         &self,
         open: &dyn Fn() -> Result<HeightRows>,
-        create: &dyn Fn(Size) -> Result<Maps<RowsOut>>,
+        create: &dyn Fn(Size) -> Result<Maps<MapOut>>,
         options: &BakeOptions,
         monitor: &Monitor,
     ) -> Result<Baked> {
         let (ran, plan) = self.run(|backend| {
             let turn = monitor.turn();
-            let source = open()?;
+            let mut source = open()?;
             let plan = BakePlan::new(options, source.size(), source.height_type())?;
-            let sinks = create(plan.size)?;
-            check_maps(options, &sinks)?;
-            let mut sinks = sinks.into_vec();
-            let all_take_it_last = sinks.iter().all(|sink| sink.takes_first_row_last());
-            let order = match (plan.edges.y, plan.size.height()) {
-                (Edge::Wrap, height) if height > 1 && all_take_it_last => RowOrder::FirstRowLast,
-                _ => RowOrder::FromTop,
-            };
-            let levels: Vec<LevelsOut<'_>> = sinks.iter_mut().map(|sink| sink.levels().map(|it| it as _)).collect();
-            if options.roughness.is_some() && levels.last().is_none_or(Option::is_none) {
+            let maps = create(plan.size)?;
+            if maps.roughness.as_ref().is_some_and(|map| map.levels.is_none()) {
                 let range = "a .ktx2 or .dds file with mips";
                 return Err(Error::parameter("roughness", "a map without mip levels", range));
             }
-            let held_map = if is_held(&plan, source.as_ref(), order) { plan.map_bytes() } else { 0 };
-            let passing = job_bytes(backend, RowBytes::of_bake(&plan), plan.size.height(), &sinks);
-            let beside_maps = beside_bytes(backend, &plan, options, &levels);
-            let _memory = turn.take(source.held_bytes() + held_map as u64 + passing + beside_maps, monitor)?;
-            write_watched(sinks, &formats(&plan, options), plan.size, order, monitor, |sinks| {
-                let (sinks, beside) = beside(options, sinks, levels);
-                let bake = |bands: &mut dyn HeightBands| bake_with_levels(backend, &plan, order, bands, sinks, beside);
-                stream(source, &plan, order, backend.band_rows(RowBytes::of_bake(&plan)), monitor, bake)
+            let order = match (plan.edges.y, plan.size.height()) {
+                (Edge::Wrap, height) if height > 1 && maps.iter().all(|map| map.rows.takes_first_row_last()) => {
+                    RowOrder::FirstRowLast
+                }
+                _ => RowOrder::FromTop,
+            };
+            let is_held = is_held(&plan, source.as_ref(), order);
+            let held_map = if is_held { plan.map_bytes() as u64 } else { 0 };
+            let row = RowBytes::of_bake(&plan);
+            let passing = job_bytes(backend, row, plan.size.height(), maps.iter().map(|map| &map.rows));
+            let levels = level_bytes(backend, &plan, &maps);
+            let _memory = turn.take(source.held_bytes() + held_map + passing + levels, monitor)?;
+
+            // The texels of the first map are those of the others: they are counted once.
+            let mut row_texels = plan.size.width();
+            let mut maps = maps.pair(plan.formats())?.try_map(|(map, format)| {
+                let writer = CodeWriter::new(map.rows, plan.size, format, order)?;
+                Ok((WatchedRows::new(writer, std::mem::take(&mut row_texels), monitor), map.levels))
             })?;
+            let sinks = maps.as_mut().map(|(largest, levels)| MapSinks { largest, levels: levels.take() });
+            let (bake, band_rows) = (Bake { backend, plan: &plan, order }, backend.band_rows(row));
+            if is_held {
+                let map = read_map_watched(source.as_mut(), monitor)?;
+                drop(source);
+                bake.run(&mut MapBands::new(&map, plan.edges.y, band_rows), sinks)?;
+            } else {
+                bake.run(&mut BandReader::new(source, plan.edges.y, order, band_rows, monitor.stop())?, sinks)?;
+            }
+            finish(maps.into_iter().map(|(rows, _)| rows))?;
             Ok(plan)
         })?;
         Ok(Baked { ran, size: plan.size, height_type: plan.height_type, scale: plan.scale })
     }
 }
 
-/// Fails unless there is something for each map that is asked for, and for no other.
-fn check_maps<T>(options: &BakeOptions, maps: &Maps<T>) -> Result<()> {
-    let given = [maps.normal.is_some(), maps.parallax.is_some(), maps.roughness.is_some()];
-    if given == [options.normal.is_some(), options.parallax.is_some(), options.roughness.is_some()] {
-        return Ok(());
-    }
-    Err(Error::parameter("maps", "others", "those that the options ask for"))
-}
-
-/// The formats of all maps: the plan's and that of the roughness map.
-fn formats(plan: &BakePlan, options: &BakeOptions) -> Vec<TexelFormat> {
-    plan.outputs().chain(options.roughness.map(|options| options.format.texel())).collect()
-}
-
-/// The sinks of the plan's maps, and what is made beside them: the roughness map, whose sink is the last, and levels.
-pub(super) fn beside<'s, 'c>(
-    options: &'s BakeOptions,
-    sinks: &'s mut [&'c mut dyn CodeSink],
-    mut levels: Vec<LevelsOut<'s>>,
-) -> (&'s mut [&'c mut dyn CodeSink], Beside<'s>) {
-    let Some(options) = &options.roughness else { return (sinks, Beside { levels, roughness: None }) };
-    let (largest, maps) = sinks.split_last_mut().expect("a sink for each map");
-    let roughness = RoughnessOut { options, largest: &mut **largest, levels: levels.pop().flatten() };
-    (maps, Beside { levels, roughness: Some(roughness) })
-}
-
 /// Whether the heights are held in memory, since their last row is needed first, and far.
 fn is_held(plan: &BakePlan, source: &dyn RowSource, order: RowOrder) -> bool {
     let needs_last_row_first = plan.edges.y == Edge::Wrap && order == RowOrder::FromTop;
     needs_last_row_first && !source.last_row_is_near() && plan.map_bytes() <= HELD_BYTES
-}
-
-/// Bakes the rows of a source, cut into bands.
-fn stream(
-    mut source: HeightRows,
-    plan: &BakePlan,
-    order: RowOrder,
-    band_rows: usize,
-    monitor: &Monitor,
-    bake: impl FnOnce(&mut dyn HeightBands) -> Result<()>,
-) -> Result<()> {
-    if is_held(plan, source.as_ref(), order) {
-        let map = read_map_watched(source.as_mut(), monitor)?;
-        return bake(&mut MapBands::new(&map, plan.edges.y, band_rows));
-    }
-    bake(&mut BandReader::new(source, plan.edges.y, order, band_rows, monitor.stop())?)
 }

@@ -1,7 +1,7 @@
 //! Two normal maps into one.
 
 use super::memory::job_bytes;
-use super::write::{whole_sink, write_watched};
+use super::write::{WatchedRows, finish, whole_sink};
 use super::{Baker, Ran, check_same_size};
 use crate::backend::RowBytes;
 use crate::error::{Error, Result};
@@ -9,8 +9,8 @@ use crate::exact::Weights;
 use crate::map::{Codes, CodesMut, HeightMap, NormalMap, Size};
 use crate::ops::blend::{BlendInputs, BlendOptions, BlendPlan};
 use crate::stream::{
-    HeightRows, LayerReader, LayerSource, MapLayers, MaskLayer, Monitor, NormalLayer, NormalRows, RowOrder, RowsOut,
-    Tiled, check_components, height_codes, read_normals, read_normals_watched, rounded_mask,
+    CodeWriter, HeightRows, LayerReader, LayerSource, MapLayers, MaskLayer, Monitor, NormalLayer, NormalRows, RowOrder,
+    RowsOut, Tiled, check_components, height_codes, read_normals, read_normals_watched, rounded_mask,
 };
 
 /// How a blend ran.
@@ -91,12 +91,12 @@ impl Baker {
             let mask_type = mask.as_ref().map(|mask| mask.height_type());
             let plan = BlendPlan::new(options, size, [base.format(), detail.format()], mask_type)?;
             check_layer_sizes(size, detail.size(), mask.as_ref().map(|mask| mask.size()), options)?;
-            let sinks = vec![create(size)?];
+            let sink = create(size)?;
             let tiles = detail.size() != size;
             let held_tile = if tiles { detail.size().texels() * detail.format().texel().bytes() } else { 0 };
             let held_by_sources =
                 base.held_bytes() + detail.held_bytes() + mask.as_ref().map_or(0, |mask| mask.held_bytes());
-            let passing = job_bytes(backend, RowBytes::of_blend(&plan), size.height(), &sinks);
+            let passing = job_bytes(backend, RowBytes::of_blend(&plan), size.height(), [&sink]);
             let _memory = turn.take(held_by_sources + held_tile as u64 + passing, monitor)?;
             if tiles {
                 detail = Box::new(Tiled::new(read_normals_watched(detail.as_mut(), monitor)?, size));
@@ -107,9 +107,10 @@ impl Baker {
                 layers.push(Box::new(MaskLayer::new(mask)));
             }
             let band_rows = backend.band_rows(RowBytes::of_blend(&plan));
-            write_watched(sinks, &[plan.format.texel()], size, RowOrder::FromTop, monitor, |sinks| {
-                backend.blend(&plan, &mut LayerReader::new(layers, size.height(), band_rows)?, sinks[0])
-            })?;
+            let writer = CodeWriter::new(sink, size, plan.format.texel(), RowOrder::FromTop)?;
+            let mut rows = WatchedRows::new(writer, size.width(), monitor);
+            backend.blend(&plan, &mut LayerReader::new(layers, size.height(), band_rows)?, &mut rows)?;
+            finish([rows])?;
             Ok((size, plan.used_weights()))
         })?;
         Ok(Blended { ran, size, weights })

@@ -1,14 +1,10 @@
 //! Height maps into all mip levels of their maps, in memory.
 
 use super::Baker;
-use super::bake::beside;
-use super::write::{as_dyn, whole_sink};
 use crate::backend::RowBytes;
 use crate::error::Result;
-use crate::map::{
-    CodeMap, CodesMut, CodesRef, HeightMap, MapFormat, Maps, NormalMap, ParallaxMap, RoughnessMap, Size, TexelFormat,
-};
-use crate::mips::bake_with_levels;
+use crate::map::{CodeMap, CodesRef, HeightMap, MapFormat, Maps, NormalMap, ParallaxMap, RoughnessMap, Size};
+use crate::mips::{Bake, LevelsOut, MapSinks};
 use crate::ops::bake::{BakeOptions, BakePlan, NormalOptions};
 use crate::stream::{LevelSink, MapBands, MapSink, RowOrder};
 
@@ -55,19 +51,14 @@ impl Baker {
         let mut parallax = options.parallax.map(|format| zeroed(plan.size, format));
         let mut roughness = options.roughness.map(|options| zeroed(plan.size, options.format));
         self.run(|backend| {
-            let maps = [
-                normal.as_deref_mut().and_then(Levels::of),
-                parallax.as_deref_mut().and_then(Levels::of),
-                roughness.as_deref_mut().and_then(Levels::of),
-            ];
-            let (mut largest, levels): (Vec<_>, Vec<_>) =
-                maps.into_iter().flatten().map(|map| ((map.largest, map.format), Some(map.smaller))).unzip();
-            let whole = largest.iter_mut().map(|(codes, format)| whole_sink(codes, *format, plan.size));
-            let mut sinks: Vec<MapSink<'_>> = whole.collect();
-            let mut sinks = as_dyn(&mut sinks);
-            let (sinks, beside) = beside(options, &mut sinks, levels);
+            let mut maps = Maps {
+                normal: normal.as_deref_mut().and_then(sinks),
+                parallax: parallax.as_deref_mut().and_then(sinks),
+                roughness: roughness.as_deref_mut().and_then(sinks),
+            };
+            let maps = maps.as_mut().map(|(largest, levels)| MapSinks { largest, levels: levels.take() });
             let mut bands = MapBands::new(heights, plan.edges.y, backend.map_band_rows(RowBytes::of_bake(&plan)));
-            bake_with_levels(backend, &plan, RowOrder::FromTop, &mut bands, sinks, beside)
+            Bake { backend, plan: &plan, order: RowOrder::FromTop }.run(&mut bands, maps)
         })?;
         Ok(Maps { normal, parallax, roughness })
     }
@@ -80,19 +71,11 @@ fn zeroed<F: MapFormat>(size: Size, format: F) -> Vec<CodeMap<F>> {
     size.levels().map(|size| CodeMap::zeroed(size, format)).collect()
 }
 
-/// Room for the levels of one map.
-struct Levels<'a> {
-    largest: CodesMut<'a>,
-    format: TexelFormat,
-    smaller: Box<dyn LevelSink + 'a>,
-}
-
-impl<'a> Levels<'a> {
-    fn of<F: MapFormat + Send>(levels: &'a mut [CodeMap<F>]) -> Option<Self> {
-        let (largest, smaller) = levels.split_first_mut()?;
-        let format = largest.texel_format();
-        Some(Self { largest: largest.codes_mut(), format, smaller: Box::new(MemoryLevels(smaller)) })
-    }
+/// Room for the largest level of a map, and for the others.
+fn sinks<F: MapFormat + Send>(levels: &mut [CodeMap<F>]) -> Option<(MapSink<'_>, LevelsOut<'_>)> {
+    let (largest, smaller) = levels.split_first_mut()?;
+    let row_codes = largest.texel_format().row_codes(largest.size().width());
+    Some((MapSink::new(largest.codes_mut(), row_codes), Some(Box::new(MemoryLevels(smaller)))))
 }
 
 /// The levels of a map in memory, from level 1 on.

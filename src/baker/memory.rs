@@ -1,9 +1,10 @@
 //! What a job holds in memory.
 
 use crate::backend::{Backend, RowBytes};
-use crate::mips::{self, LevelsOut};
-use crate::ops::bake::{BakeOptions, BakePlan};
-use crate::stream::{BUFFERS, RowsOut};
+use crate::map::Maps;
+use crate::mips;
+use crate::ops::bake::BakePlan;
+use crate::stream::{BUFFERS, MapOut, RowsOut};
 use rayon::ThreadPool;
 
 /// Rows of heights beside those of a band: its halo, what it has in common with the next one, and both ends of a map
@@ -16,24 +17,20 @@ const FIXED_BYTES: usize = 2 << 20;
 
 /// The most bytes that a job holds while a map of `height` rows passes through `backend` into `sinks`, without what the
 /// sources hold.
-pub(super) fn job_bytes(backend: &dyn Backend, row: RowBytes, height: usize, sinks: &[RowsOut]) -> u64 {
+pub(super) fn job_bytes<'a>(
+    backend: &dyn Backend,
+    row: RowBytes,
+    height: usize,
+    sinks: impl IntoIterator<Item = &'a RowsOut>,
+) -> u64 {
     let rows = backend.band_rows(row).min(height);
     let bands = BUFFERS * ((rows + BESIDE) * row.read + rows * row.written);
-    let held_by_sinks: u64 = sinks.iter().map(|sink| sink.held_bytes(rows)).sum();
+    let held_by_sinks: u64 = sinks.into_iter().map(|sink| sink.held_bytes(rows)).sum();
     (FIXED_BYTES + bands) as u64 + backend.held_bytes(row) + held_by_sinks
 }
 
-/// The most bytes that a bake holds besides for the smaller levels of its maps, those of its roughness map last, and for
-/// the rows of that map.
-pub(super) fn beside_bytes(
-    backend: &dyn Backend,
-    plan: &BakePlan,
-    options: &BakeOptions,
-    levels: &[LevelsOut<'_>],
-) -> u64 {
+/// The most bytes that a bake holds besides for the smaller levels of its maps.
+pub(super) fn level_bytes(backend: &dyn Backend, plan: &BakePlan, maps: &Maps<MapOut>) -> u64 {
     let threads = backend.host_threads().map_or_else(rayon::current_num_threads, ThreadPool::current_num_threads);
-    let rows = backend.band_rows(RowBytes::of_bake(plan)).min(plan.size.height());
-    let texel_bytes = options.roughness.map_or(0, |options| options.format.texel().bytes());
-    let roughness_rows = BUFFERS * rows * plan.size.width() * texel_bytes;
-    mips::held_bytes(plan, levels, options.roughness.as_ref(), threads) + roughness_rows as u64
+    mips::held_bytes(plan, maps, threads)
 }

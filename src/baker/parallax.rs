@@ -1,7 +1,7 @@
 //! Heights and the normals of another map into parallax maps.
 
 use super::memory::job_bytes;
-use super::write::{whole_sink, write_watched};
+use super::write::{WatchedRows, finish, whole_sink};
 use super::{Baker, Ran, check_same_size};
 use crate::backend::RowBytes;
 use crate::error::Result;
@@ -9,8 +9,8 @@ use crate::map::{HeightMap, NormalMap, ParallaxFormat, ParallaxMap, Size};
 use crate::ops::Precision;
 use crate::ops::parallax::ParallaxPlan;
 use crate::stream::{
-    HeightLayer, HeightRows, LayerReader, LayerSource, MapLayers, Monitor, NormalLayer, NormalRows, RowOrder, RowsOut,
-    check_components, height_codes,
+    CodeWriter, HeightLayer, HeightRows, LayerReader, LayerSource, MapLayers, Monitor, NormalLayer, NormalRows,
+    RowOrder, RowsOut, check_components, height_codes,
 };
 
 impl Baker {
@@ -57,16 +57,17 @@ impl Baker {
             let (heights, normals) = open()?;
             let plan = ParallaxPlan::new(heights.size(), heights.height_type(), normals.format(), format, precision)?;
             check_same_size("size of the normal map", normals.size(), plan.size)?;
-            let sinks = vec![create(plan.size)?];
+            let sink = create(plan.size)?;
             let row = RowBytes::of_parallax(&plan);
-            let passing = job_bytes(backend, row, plan.size.height(), &sinks);
+            let passing = job_bytes(backend, row, plan.size.height(), [&sink]);
             let _memory = turn.take(heights.held_bytes() + normals.held_bytes() + passing, monitor)?;
             let band_rows = backend.band_rows(row);
             let layers: Vec<Box<dyn LayerSource>> =
                 vec![Box::new(HeightLayer::new(heights)), Box::new(NormalLayer::new(normals))];
-            write_watched(sinks, &[format.texel()], plan.size, RowOrder::FromTop, monitor, |sinks| {
-                backend.parallax(&plan, &mut LayerReader::new(layers, plan.size.height(), band_rows)?, sinks[0])
-            })?;
+            let writer = CodeWriter::new(sink, plan.size, format.texel(), RowOrder::FromTop)?;
+            let mut rows = WatchedRows::new(writer, plan.size.width(), monitor);
+            backend.parallax(&plan, &mut LayerReader::new(layers, plan.size.height(), band_rows)?, &mut rows)?;
+            finish([rows])?;
             Ok(plan.size)
         })
     }

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::map::{CodesMut, Size, TexelFormat};
-use crate::stream::{CodeSink, CodeWriter, MapSink, Monitor, RowOrder, RowSink, RowsOut};
+use crate::stream::{CodeSink, CodeWriter, MapSink, Monitor, RowsOut};
 
 /// All rows of a map in memory, to fill.
 pub(super) fn whole_sink<'a>(codes: &'a mut CodesMut<'_>, format: TexelFormat, size: Size) -> MapSink<'a> {
@@ -10,59 +10,64 @@ pub(super) fn whole_sink<'a>(codes: &'a mut CodesMut<'_>, format: TexelFormat, s
     MapSink::new(codes.slice(all), format.row_codes(size.width()))
 }
 
-pub(super) fn as_dyn<S: CodeSink>(sinks: &mut [S]) -> Vec<&mut dyn CodeSink> {
-    sinks.iter_mut().map(|sink| sink as &mut dyn CodeSink).collect()
-}
-
-/// Lets `produce` fill the rows of several maps, each written on a thread of its own, and completes
-/// them all before any file gets its name.
-pub(super) fn write_watched(
-    sinks: Vec<RowsOut>,
-    formats: &[TexelFormat],
-    size: Size,
-    order: RowOrder,
-    monitor: &Monitor,
-    produce: impl FnOnce(&mut [&mut dyn CodeSink]) -> Result<()>,
-) -> Result<()> {
-    let writer = |(sink, format): (_, &TexelFormat)| CodeWriter::new(sink, size, *format, order);
-    let writers: Vec<CodeWriter> = sinks.into_iter().zip(formats).map(writer).collect::<Result<_>>()?;
-    let monitored = |(index, sink)| {
-        let row_texels = if index == 0 { size.width() } else { 0 };
-        Monitored { sink, row_texels, room_texels: 0, texels: 0, monitor }
-    };
-    let mut sinks: Vec<Monitored<'_>> = writers.into_iter().enumerate().map(monitored).collect();
-    let produced = produce(&mut as_dyn(&mut sinks));
-    let texels = sinks[0].texels;
-    let finish = || {
-        let complete: Vec<RowsOut> = sinks.into_iter().map(|sink| sink.sink.complete()).collect::<Result<_>>()?;
-        complete.into_iter().try_for_each(RowSink::finish)
-    };
-    // What a failed try has counted is baked again.
-    produced.and_then(|()| finish()).inspect_err(|_| monitor.take_back(texels))
-}
-
-/// Counts what passes to a sink.
-struct Monitored<'a> {
-    sink: CodeWriter,
-    /// Texels of a row; zero for all but the first map of a bake, since its texels are the others' too.
+/// The rows of a map that are written, on a thread of their own, while the next ones are computed.
+pub(super) struct WatchedRows<'a> {
+    writer: CodeWriter,
+    /// Texels of a row that are counted.
     row_texels: usize,
     room_texels: usize,
-    /// Counted so far.
-    texels: u64,
-    monitor: &'a Monitor,
+    counted: Counted<'a>,
 }
 
-impl CodeSink for Monitored<'_> {
+impl<'a> WatchedRows<'a> {
+    /// `monitor` is told of `row_texels` texels with each row.
+    pub fn new(writer: CodeWriter, row_texels: usize, monitor: &'a Monitor) -> Self {
+        Self { writer, row_texels, room_texels: 0, counted: Counted { monitor, texels: 0 } }
+    }
+}
+
+/// Completes all files before any gets its name.
+pub(super) fn finish<'a>(maps: impl IntoIterator<Item = WatchedRows<'a>>) -> Result<()> {
+    let complete = |map: WatchedRows<'a>| Ok((map.writer.complete()?, map.counted));
+    let maps: Vec<(RowsOut, Counted<'a>)> = maps.into_iter().map(complete).collect::<Result<_>>()?;
+    let finish = |(sink, counted): (RowsOut, _)| sink.finish().map(|()| counted);
+    let counted: Vec<Counted<'a>> = maps.into_iter().map(finish).collect::<Result<_>>()?;
+    counted.into_iter().for_each(Counted::keep);
+    Ok(())
+}
+
+impl CodeSink for WatchedRows<'_> {
     fn room(&mut self, rows: usize) -> Result<CodesMut<'_>> {
-        self.monitor.check()?;
+        self.counted.monitor.check()?;
         self.room_texels = rows * self.row_texels;
-        self.sink.room(rows)
+        self.writer.room(rows)
     }
 
     fn filled(&mut self) -> Result<()> {
-        self.sink.filled()?;
-        let texels = std::mem::take(&mut self.room_texels) as u64;
+        self.writer.filled()?;
+        self.counted.add(std::mem::take(&mut self.room_texels) as u64)
+    }
+}
+
+/// Texels that a monitor was told of, and told back unless they are kept: what a failed try has counted is baked again.
+struct Counted<'a> {
+    monitor: &'a Monitor,
+    texels: u64,
+}
+
+impl Counted<'_> {
+    fn add(&mut self, texels: u64) -> Result<()> {
         self.texels += texels;
         self.monitor.add(texels)
+    }
+
+    fn keep(mut self) {
+        self.texels = 0;
+    }
+}
+
+impl Drop for Counted<'_> {
+    fn drop(&mut self) {
+        self.monitor.take_back(self.texels);
     }
 }

@@ -93,7 +93,7 @@ impl BlendJob {
             };
             let create = |size| {
                 create_folder_of(&self.output)?;
-                create_normals_with(&self.output, size, self.options.format, &self.write)
+                Ok(create_normals_with(&self.output, size, self.options.format, &self.write)?.rows)
             };
             let blended = self.baker.blend_rows(&open, &create, &self.options, monitor);
             let all_read = blended.is_ok();

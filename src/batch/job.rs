@@ -10,10 +10,10 @@ use super::targets::{self, Files, Refusal};
 use crate::baker::{Baked, Baker};
 use crate::error::{Error, Result};
 use crate::exact::Scale;
-use crate::io::{Cropped, ReadOptions, WriteOptions, create_witnessed};
+use crate::io::{Cropped, ReadOptions, WriteOptions, create_codes};
 use crate::map::{Edge, Edges, Maps, Size, TexelFormat};
 use crate::ops::bake::BakeOptions;
-use crate::stream::{HeightRows, Monitor, RowsOut};
+use crate::stream::{HeightRows, MapOut, Monitor, RowsOut};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -217,7 +217,7 @@ impl Job {
         let options =
             BakeOptions { scale: options.scale.over(size, whole)?, edges: Edges::both(Edge::Clamp), ..*options };
         let open = || Ok(Box::new(neighbours.around(&self.input, open()?, &self.read, monitor)?) as HeightRows);
-        let cropped = |(sink, format)| Box::new(Cropped::new(sink, size, format)) as RowsOut;
+        let cropped = |(map, format): (MapOut, _)| (Box::new(Cropped::new(map.rows, size, format)) as RowsOut).into();
         let create_cropped = |_| {
             let Maps { normal, parallax, .. } = create(size)?;
             let normal = normal.zip(options.normal.map(|format| format.texel())).map(cropped);
@@ -260,7 +260,7 @@ impl Job {
             // A scale out of range is told before there is a file.
             self.scale()?.resolve(size)?;
             let Maps { parallax, .. } = create(size)?;
-            parallax.ok_or_else(|| Error::parameter("maps", "none", "parallax"))
+            parallax.map(|map| map.rows).ok_or_else(|| Error::parameter("maps", "none", "parallax"))
         };
         let ran = self.baker.parallax_with_normals_rows(&open, &create, format, self.options.precision, monitor);
         warnings.extend(heights.warnings(ran.is_ok()));
@@ -278,12 +278,12 @@ impl Job {
     }
 
     /// A sink for each output, of whose file `written` is told.
-    fn create(&self, size: Size, written: Option<&Written>) -> Result<Maps<RowsOut>> {
+    fn create(&self, size: Size, written: Option<&Written>) -> Result<Maps<MapOut>> {
         self.outputs.iter().try_for_each(|path| create_folder_of(path))?;
         let create = |path: &Option<PathBuf>, format: Option<TexelFormat>| {
             let Some((path, format)) = path.as_ref().zip(format) else { return Ok(None) };
             let witness = written.map(|written| written.witness(path));
-            create_witnessed(path, size, format, &self.write, witness).map(Some)
+            create_codes(path, size, format, &self.write, witness).map(Some)
         };
         let BakeOptions { normal, parallax, roughness, .. } = &self.options;
         Ok(Maps {
@@ -295,7 +295,7 @@ impl Job {
 }
 
 /// Makes the sinks of a job's outputs.
-type Create<'a> = &'a dyn Fn(Size) -> Result<Maps<RowsOut>>;
+type Create<'a> = &'a dyn Fn(Size) -> Result<Maps<MapOut>>;
 
 /// Makes the folders above a file.
 pub(super) fn create_folder_of(file: &Path) -> Result<()> {

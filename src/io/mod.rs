@@ -53,7 +53,7 @@ pub use raw::{RawKind, RawLayout};
 pub(crate) use sink::Witness;
 pub use texture::BlockCompression;
 #[cfg(feature = "cli")]
-pub(crate) use write::create_witnessed;
+pub(crate) use write::create_codes;
 #[cfg(feature = "cli")]
 pub(crate) use write::is_compressed;
 pub use write::{

@@ -3,7 +3,7 @@
 use super::replace::Replacement;
 use crate::error::{Error, Result};
 use crate::map::{CodesRef, Depth, Size, TexelFormat};
-use crate::stream::{LevelSink, RowSink};
+use crate::stream::RowSink;
 use std::io::{self, Read};
 use std::path::Path;
 
@@ -17,11 +17,6 @@ pub(super) trait RowEncoder: Send {
 
     /// Writes whole rows from row `first` on, all of the depth that the file was created with.
     fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()>;
-
-    /// What takes the rows of the smaller mip levels; `None` if the file has one level, or it was asked for before.
-    fn levels(&mut self) -> Option<Box<dyn LevelSink>> {
-        None
-    }
 
     /// Writes what follows the last row.
     fn finish(self: Box<Self>) -> Result<()>;
@@ -121,10 +116,6 @@ impl RowSink for FileSink {
         written?;
         self.expected.advance(first, count);
         Ok(())
-    }
-
-    fn levels(&mut self) -> Option<Box<dyn LevelSink>> {
-        self.encoder.as_mut()?.levels()
     }
 
     fn complete(&mut self) -> Result<()> {

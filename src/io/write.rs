@@ -1,15 +1,13 @@
 //! How maps are written.
 
 use super::format::OutputFormat;
-use super::sink::FileSink;
-#[cfg(feature = "cli")]
 use super::sink::Witness;
 use super::texture::BlockCompression;
 use super::{exr, png, texture, tiff};
 use crate::error::{Error, Result};
 use crate::map::{NormalFormat, ParallaxFormat, RoughnessFormat, Size, TexelFormat};
 use crate::names::named;
-use crate::stream::RowsOut;
+use crate::stream::{MapOut, RowsOut};
 use std::path::Path;
 
 /// How a map becomes a file.
@@ -18,7 +16,7 @@ pub struct WriteOptions {
     /// What a PNG's size is worth; the texels are the same.
     pub compression: Compression,
     /// Whether the file has all mip levels down to a single texel: KTX2 and DDS, whose smaller levels
-    /// [`crate::stream::RowSink::levels`] takes.
+    /// [`MapOut::levels`] takes.
     pub mips: bool,
     /// The blocks of a KTX2 or DDS file; `None`: texel by texel.
     pub blocks: Option<BlockCompression>,
@@ -45,7 +43,7 @@ named! {
 /// # Errors
 /// As [`create_normals_with`].
 pub fn create_normals(path: &Path, size: Size, format: NormalFormat) -> Result<RowsOut> {
-    create_normals_with(path, size, format, &WriteOptions::default())
+    Ok(create_normals_with(path, size, format, &WriteOptions::default())?.rows)
 }
 
 /// Creates a normal map file; nothing stands under `path` until its rows are complete.
@@ -66,8 +64,8 @@ pub fn create_normals(path: &Path, size: Size, format: NormalFormat) -> Result<R
 /// # Errors
 /// [`crate::Error::Parameter`] if the format cannot hold `format`, or not as `options` say; [`crate::Error::File`] for
 /// an unknown extension, a name that cannot be replaced, or a DDS above 4 GiB; [`crate::Error::Io`].
-pub fn create_normals_with(path: &Path, size: Size, format: NormalFormat, options: &WriteOptions) -> Result<RowsOut> {
-    Ok(create_codes(path, size, format.texel(), options)?)
+pub fn create_normals_with(path: &Path, size: Size, format: NormalFormat, options: &WriteOptions) -> Result<MapOut> {
+    create_codes(path, size, format.texel(), options, None)
 }
 
 /// Creates a parallax map file as [`create_parallax_with`] does, with the default [`WriteOptions`].
@@ -75,7 +73,7 @@ pub fn create_normals_with(path: &Path, size: Size, format: NormalFormat, option
 /// # Errors
 /// As [`create_normals_with`].
 pub fn create_parallax(path: &Path, size: Size, format: ParallaxFormat) -> Result<RowsOut> {
-    create_parallax_with(path, size, format, &WriteOptions::default())
+    Ok(create_parallax_with(path, size, format, &WriteOptions::default())?.rows)
 }
 
 /// Creates a parallax map file; nothing stands under `path` until its rows are complete.
@@ -92,13 +90,8 @@ pub fn create_parallax(path: &Path, size: Size, format: ParallaxFormat) -> Resul
 ///
 /// # Errors
 /// As [`create_normals_with`].
-pub fn create_parallax_with(
-    path: &Path,
-    size: Size,
-    format: ParallaxFormat,
-    options: &WriteOptions,
-) -> Result<RowsOut> {
-    Ok(create_codes(path, size, format.texel(), options)?)
+pub fn create_parallax_with(path: &Path, size: Size, format: ParallaxFormat, options: &WriteOptions) -> Result<MapOut> {
+    create_codes(path, size, format.texel(), options, None)
 }
 
 /// Creates a roughness map file: one unorm component, as [`create_parallax_with`] has it, of one level or of all.
@@ -110,8 +103,8 @@ pub fn create_roughness_with(
     size: Size,
     format: RoughnessFormat,
     options: &WriteOptions,
-) -> Result<RowsOut> {
-    Ok(create_codes(path, size, format.texel(), options)?)
+) -> Result<MapOut> {
+    create_codes(path, size, format.texel(), options, None)
 }
 
 /// Fails if a file called `path` cannot hold a roughness map of mip levels; nothing is looked up or created.
@@ -201,24 +194,19 @@ fn check_plain(path: &Path, options: &WriteOptions) -> Result<()> {
 }
 
 /// Creates a file of codes; `witness` reads it before it has its name.
-#[cfg(feature = "cli")]
-pub(crate) fn create_witnessed(
+pub(crate) fn create_codes(
     path: &Path,
     size: Size,
     format: TexelFormat,
     options: &WriteOptions,
     witness: Option<Witness>,
-) -> Result<RowsOut> {
-    let mut sink = create_codes(path, size, format, options)?;
-    sink.witness = witness;
-    Ok(sink)
-}
-
-fn create_codes(path: &Path, size: Size, format: TexelFormat, options: &WriteOptions) -> Result<Box<FileSink>> {
-    match check_codes(path, format, options)? {
-        OutputFormat::Png => png::create(path, size, format, options.compression),
-        OutputFormat::Tiff => tiff::create(path, size, format),
-        OutputFormat::Exr => exr::create(path, size, format),
-        OutputFormat::Texture(container) => texture::create(path, container, size, format, options),
-    }
+) -> Result<MapOut> {
+    let (mut rows, levels) = match check_codes(path, format, options)? {
+        OutputFormat::Png => (png::create(path, size, format, options.compression)?, None),
+        OutputFormat::Tiff => (tiff::create(path, size, format)?, None),
+        OutputFormat::Exr => (exr::create(path, size, format)?, None),
+        OutputFormat::Texture(container) => texture::create(path, container, size, format, options)?,
+    };
+    rows.witness = witness;
+    Ok(MapOut { rows, levels })
 }

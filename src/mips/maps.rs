@@ -1,9 +1,10 @@
 //! The smaller levels of normal and parallax maps, from sums to codes.
 
-use super::chain::LevelsOut;
+use super::bake::LevelsOut;
 use super::pyramid::{Pyramid, Rows};
 use super::rows::{codes_of, samples_of};
 use super::sample::Sample;
+use super::tee::Tap;
 use crate::backend::cpu::levels::{LevelHeight, LevelSum, planes, samples};
 use crate::error::Result;
 use crate::map::{HeightType, TexelFormat};
@@ -34,7 +35,8 @@ impl<'a> MapLevels<'a> {
 
     /// Bytes that are held at most while strips of `rows` rows are added on `threads` threads.
     pub fn held_bytes(plan: &BakePlan, rows: usize, threads: usize) -> u64 {
-        let (planes, texel_bytes) = (planes(plan), plan.texel_bytes());
+        let planes = planes(plan);
+        let texel_bytes = plan.outputs().map(|format| format.bytes()).sum();
         match plan.height_type {
             HeightType::U8 | HeightType::U16 => {
                 Pyramid::<i32>::held_bytes(plan.size, planes, texel_bytes, rows, threads)
@@ -42,9 +44,10 @@ impl<'a> MapLevels<'a> {
             HeightType::F32 => Pyramid::<f32>::held_bytes(plan.size, planes, texel_bytes, rows, threads),
         }
     }
+}
 
-    /// Adds a strip whose first row is row `row` of the map, and writes what it completes.
-    pub fn add(&mut self, row: usize, strip: &HeightBand<'_>) -> Result<()> {
+impl Tap for MapLevels<'_> {
+    fn add(&mut self, row: usize, strip: &HeightBand<'_>) -> Result<()> {
         let Self { plan, sums, sinks } = self;
         match (strip, sums) {
             (HeightBand::U8(strip), Sums::Integers(pyramid)) => add(plan, pyramid, row, strip, sinks),
@@ -54,8 +57,8 @@ impl<'a> MapLevels<'a> {
         }
     }
 
-    pub fn finish(self) -> Result<()> {
-        let Self { plan, sums, mut sinks } = self;
+    fn finish(self: Box<Self>) -> Result<()> {
+        let Self { plan, sums, mut sinks } = *self;
         match sums {
             Sums::Integers(mut pyramid) => write(plan, pyramid.finish(), &mut sinks),
             Sums::Floats(mut pyramid) => write(plan, pyramid.finish(), &mut sinks),

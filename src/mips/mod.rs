@@ -11,7 +11,8 @@
 //! heights are summed up in f64 in the order that [`pyramid::Pyramid`] tells, and their mean is rounded to f32 once.
 
 mod axis;
-mod chain;
+mod bake;
+mod flat;
 mod level;
 mod maps;
 mod pyramid;
@@ -19,6 +20,7 @@ mod roughness;
 mod roughness_levels;
 mod rows;
 mod sample;
+mod tee;
 
-pub(crate) use chain::{Beside, LevelsOut, RoughnessOut, bake_with_levels, held_bytes};
+pub(crate) use bake::{Bake, LevelsOut, MapSinks, held_bytes};
 pub use roughness::{RoughnessMethod, RoughnessOptions};

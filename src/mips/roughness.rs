@@ -55,6 +55,21 @@ impl Default for RoughnessOptions {
     }
 }
 
+impl RoughnessOptions {
+    /// Alpha's square root where the surface is flat.
+    fn base(&self) -> f64 {
+        self.base.numerator() as f64 / self.base.denominator() as f64
+    }
+
+    /// Fails for a base beyond 0 and 1.
+    pub(crate) fn check(&self) -> Result<()> {
+        if (0.0..=1.0).contains(&self.base()) {
+            return Ok(());
+        }
+        Err(Error::parameter("base-roughness", self.base, "from 0 to 1"))
+    }
+}
+
 /// Planes that are summed up for either method.
 pub(super) const PLANES: usize = 3;
 
@@ -75,23 +90,15 @@ pub(super) struct Roughness {
 }
 
 impl Roughness {
-    /// Checks the options and resolves them for the slopes of a plan.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] for a base beyond 0 and 1, or float codes.
-    pub fn new(options: &RoughnessOptions, plan: &BakePlan) -> Result<Self> {
-        let RoughnessOptions { method, base: ratio, format } = *options;
-        format.texel().check()?;
-        let base = ratio.numerator() as f64 / ratio.denominator() as f64;
-        if !(0.0..=1.0).contains(&base) {
-            return Err(Error::parameter("base-roughness", ratio, "from 0 to 1"));
-        }
+    /// Resolves the options for the slopes of a plan.
+    pub fn new(options: &RoughnessOptions, plan: &BakePlan) -> Self {
+        let (RoughnessOptions { method, format, .. }, base) = (*options, options.base());
         let factors = match plan.slope {
             Slope::Integer(slope) => [slope.px, slope.py].map(|part| f64::from(part) / slope.z as f64),
             Slope::Float(slope) => [slope.kx, slope.ky].map(|per_sum| f64::from(per_sum) * 2f64.powi(64)),
         };
         let greatest = f64::from(Encoding::Unorm.greatest_code(format.depth).unwrap_or(255));
-        Ok(Self { method, alpha_squared: (base * base) * (base * base), base, greatest, factors })
+        Self { method, alpha_squared: (base * base) * (base * base), base, greatest, factors }
     }
 
     /// What is summed up of a row of a strip, plane after plane: dx, dy and dx^2 + dy^2, or the unit normal.
@@ -125,7 +132,7 @@ impl Roughness {
         match codes {
             CodesMut::U8(codes) => codes.iter_mut().enumerate().for_each(|(at, stored)| *stored = code(at) as u8),
             CodesMut::U16(codes) => codes.iter_mut().enumerate().for_each(|(at, stored)| *stored = code(at) as u16),
-            CodesMut::F16(_) | CodesMut::F32(_) => unreachable!("checked with the options"),
+            CodesMut::F16(_) | CodesMut::F32(_) => unreachable!("checked with the plan"),
         }
     }
 

@@ -3,6 +3,7 @@
 use super::pyramid::{Pyramid, Rows};
 use super::roughness::{PLANES, Roughness};
 use super::rows::{codes_of, samples_of};
+use super::tee::Tap;
 use crate::backend::cpu::levels::LevelHeight;
 use crate::error::Result;
 use crate::map::RoughnessFormat;
@@ -35,22 +36,6 @@ impl<'a> RoughnessLevels<'a> {
         Pyramid::<f64>::held_bytes(plan.size, PLANES, format.texel().bytes(), rows, threads) + stencil_sums as u64
     }
 
-    /// Adds a strip whose first row is row `row` of the map, and writes what it completes.
-    pub fn add(&mut self, row: usize, strip: &HeightBand<'_>) -> Result<()> {
-        let samples = match strip {
-            HeightBand::U8(strip) => self.samples(strip),
-            HeightBand::U16(strip) => self.samples(strip),
-            HeightBand::F32(strip) => self.samples(strip),
-        };
-        let complete = self.sums.add(row, &samples);
-        self.write(complete)
-    }
-
-    pub fn finish(mut self) -> Result<()> {
-        let complete = self.sums.finish();
-        self.write(complete)
-    }
-
     fn samples<T: LevelHeight<Sum: Into<f64>>>(&self, strip: &Band<'_, T>) -> Vec<f64> {
         let Self { plan, roughness, .. } = self;
         samples_of(strip, PLANES, |row, samples| roughness.samples(plan, strip, row, samples))
@@ -65,5 +50,22 @@ impl<'a> RoughnessLevels<'a> {
             maps.iter().try_for_each(|codes| self.sink.write(rows.level, rows.rows.start, codes.as_ref()))?;
         }
         Ok(())
+    }
+}
+
+impl Tap for RoughnessLevels<'_> {
+    fn add(&mut self, row: usize, strip: &HeightBand<'_>) -> Result<()> {
+        let samples = match strip {
+            HeightBand::U8(strip) => self.samples(strip),
+            HeightBand::U16(strip) => self.samples(strip),
+            HeightBand::F32(strip) => self.samples(strip),
+        };
+        let complete = self.sums.add(row, &samples);
+        self.write(complete)
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<()> {
+        let complete = self.sums.finish();
+        self.write(complete)
     }
 }

@@ -1,7 +1,7 @@
 //! Bands of a map in memory, and a map in memory as the sink: nothing is copied.
 
+use super::CodeSink;
 use super::band::{HeightBand, HeightBands, band_of_map};
-use super::writer::CodeSink;
 use crate::error::Result;
 use crate::map::{CodesMut, Edge, HeightMap};
 

@@ -14,6 +14,7 @@ mod monitor;
 mod normals;
 mod order;
 mod reader;
+mod sink;
 #[cfg(test)]
 mod tests;
 mod thread;
@@ -35,8 +36,9 @@ pub(crate) use order::RowOrder;
 pub(crate) use reader::piece_rows;
 pub(crate) use reader::{BandReader, read_map_watched};
 pub use reader::{RowSource, read_map};
-pub(crate) use writer::{CodeSink, CodeWriter};
-pub use writer::{LevelSink, RowSink};
+pub(crate) use sink::CodeSink;
+pub use sink::{LevelSink, MapOut, RowSink};
+pub(crate) use writer::CodeWriter;
 
 /// Rows of heights from anywhere.
 pub type HeightRows = Box<dyn RowSource>;

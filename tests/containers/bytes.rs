@@ -2,6 +2,7 @@
 
 use crate::io::support::Folder;
 use texbake::io::{BlockCompression, WriteOptions, create_normals_with, create_parallax_with};
+use texbake::stream::MapOut;
 use texbake::{Channels, CodesRef, Depth, Encoding, NormalFormat, ParallaxFormat, Size};
 
 /// Bytes from hexadecimal digits, in which blanks do not count.
@@ -16,12 +17,10 @@ fn two_levels_of_rg8_in_ktx2() {
     let path = folder.path("n.ktx2");
     let format = NormalFormat { channels: Channels::Xy, ..NormalFormat::default() };
     let options = WriteOptions { mips: true, ..WriteOptions::default() };
-    let mut sink = create_normals_with(&path, Size::new(2, 1).unwrap(), format, &options).unwrap();
-    let mut levels = sink.levels().unwrap();
-    sink.write(0, CodesRef::U8(&[1, 2, 3, 4])).unwrap();
-    levels.write(1, 0, CodesRef::U8(&[5, 6])).unwrap();
-    drop(levels);
-    sink.finish().unwrap();
+    let MapOut { mut rows, levels } = create_normals_with(&path, Size::new(2, 1).unwrap(), format, &options).unwrap();
+    rows.write(0, CodesRef::U8(&[1, 2, 3, 4])).unwrap();
+    levels.unwrap().write(1, 0, CodesRef::U8(&[5, 6])).unwrap();
+    rows.finish().unwrap();
     let expected = hex(
         // Identifier; VK_FORMAT_R8G8_UNORM, type size 1, 2 x 1 x 0, 0 layers, 1 face, 2 levels, no supercompression.
         "ab4b5458 203230bb 0d0a1a0a 10000000 01000000 02000000 01000000 00000000 00000000 01000000 02000000 00000000
@@ -42,7 +41,7 @@ fn a_texel_of_rgba8_in_dds() {
     let folder = Folder::new();
     let path = folder.path("n.dds");
     let size = Size::new(1, 1).unwrap();
-    let mut sink = create_normals_with(&path, size, NormalFormat::default(), &WriteOptions::default()).unwrap();
+    let mut sink = create_normals_with(&path, size, NormalFormat::default(), &WriteOptions::default()).unwrap().rows;
     sink.write(0, CodesRef::U8(&[128, 128, 255])).unwrap();
     sink.finish().unwrap();
     let zeros = "00000000".repeat(11);
@@ -63,7 +62,7 @@ fn blocks_of_one_code_and_of_a_ramp() {
     let block = |encoding, width, height, codes: &[u8]| {
         let path = folder.path("p.dds");
         let format = ParallaxFormat { encoding, depth: Depth::Bits8 };
-        let mut sink = create_parallax_with(&path, Size::new(width, height).unwrap(), format, &options).unwrap();
+        let mut sink = create_parallax_with(&path, Size::new(width, height).unwrap(), format, &options).unwrap().rows;
         sink.write(0, CodesRef::U8(codes)).unwrap();
         sink.finish().unwrap();
         std::fs::read(&path).unwrap()[148..].to_vec()

@@ -5,7 +5,7 @@ use block_compression::decode::decompress_blocks_as_rgba8;
 use block_compression::{BC7Settings, CompressionVariant};
 use std::path::PathBuf;
 use texbake::io::{BlockCompression, WriteOptions, create_normals_with, create_parallax_with};
-use texbake::stream::RowsOut;
+use texbake::stream::MapOut;
 use texbake::{Channels, Codes, Depth, Encoding, NormalFormat, ParallaxFormat, Result, Size};
 
 use BlockCompression::{Bc4, Bc5, Bc7};
@@ -100,7 +100,7 @@ impl Kind {
     }
 
     /// Creates a file of this kind.
-    pub fn create(&self, path: &std::path::Path, (width, height): (usize, usize), mips: bool) -> Result<RowsOut> {
+    pub fn create(&self, path: &std::path::Path, (width, height): (usize, usize), mips: bool) -> Result<MapOut> {
         let options = WriteOptions { mips, blocks: self.blocks, ..WriteOptions::default() };
         let (size, encoding, depth) = (Size::new(width, height)?, self.encoding, self.depth);
         let normal = |channels| NormalFormat { encoding, depth, channels, ..NormalFormat::default() };
@@ -186,16 +186,15 @@ impl Made {
         let name = format!("{}_{}x{}_{}.{container}", kind.name(), size.0, size.1, if mips { "mips" } else { "one" });
         let path = folder.path(&name);
         let levels = kind.levels(size, mips);
-        let mut sink = kind.create(&path, size, mips).unwrap();
-        let smaller = sink.levels();
+        let MapOut { mut rows, levels: smaller } = kind.create(&path, size, mips).unwrap();
         assert_eq!(smaller.is_some(), levels.len() > 1, "{name}");
-        sink.write(0, levels[0].codes.as_ref()).unwrap();
+        rows.write(0, levels[0].codes.as_ref()).unwrap();
         if let Some(mut smaller) = smaller {
             for (at, level) in levels.iter().enumerate().skip(1) {
                 smaller.write(at, 0, level.codes.as_ref()).unwrap();
             }
         }
-        sink.finish().unwrap();
+        rows.finish().unwrap();
         Self { path, kind, levels }
     }
 

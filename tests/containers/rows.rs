@@ -3,6 +3,7 @@
 use super::made::{CONTAINERS, KINDS, Kind, Level, Made};
 use crate::io::support::Folder;
 use texbake::CodesRef;
+use texbake::stream::MapOut;
 
 /// Rows `first..end` of a level.
 fn rows<'a>(kind: &Kind, level: &'a Level, first: usize, end: usize) -> CodesRef<'a> {
@@ -19,10 +20,9 @@ fn any_order_gives_the_same_bytes() {
             let whole = Made::new(&folder, kind, size, true, container);
             let path = folder.path(&format!("again.{container}"));
             for (piece, late) in [(1, false), (3, true), (5, false), (7, true)] {
-                let mut sink = kind.create(&path, size, true).unwrap();
+                let MapOut { rows: mut sink, levels: smaller } = kind.create(&path, size, true).unwrap();
                 assert!(sink.takes_first_row_last());
-                let mut smaller = sink.levels().unwrap();
-                assert!(sink.levels().is_none(), "one sink takes them");
+                let mut smaller = smaller.unwrap();
                 // The smaller levels come from another thread, and row 0 of each after its others, where it may.
                 let levels = &whole.levels;
                 let starts_late = |level: &Level| late && level.height > 1;
@@ -39,7 +39,6 @@ fn any_order_gives_the_same_bytes() {
                                 smaller.write(at, first, rows(&kind, level, first, end)).unwrap();
                             }
                         }
-                        drop(smaller);
                     });
                     for (first, end) in pieces(&levels[0]) {
                         sink.write(first, rows(&kind, &levels[0], first, end)).unwrap();
@@ -58,14 +57,14 @@ fn a_file_without_all_its_rows_does_not_appear() {
     for container in CONTAINERS {
         let (kind, path) = (KINDS[2], folder.path(&format!("n.{container}")));
         let levels = kind.levels((4, 4), true);
-        // Levels that nobody asked for, and a level of which a row is missing.
-        let mut sink = kind.create(&path, (4, 4), true).unwrap();
+        // Levels that nobody wrote, and a level of which a row is missing.
+        let MapOut { rows: mut sink, .. } = kind.create(&path, (4, 4), true).unwrap();
         sink.write(0, levels[0].codes.as_ref()).unwrap();
         let error = sink.complete().unwrap_err().to_string();
         assert_eq!(error, "mips is without 3 rows of the smaller levels: it must be complete");
         drop(sink);
-        let mut sink = kind.create(&path, (4, 4), true).unwrap();
-        let mut smaller = sink.levels().unwrap();
+        let MapOut { rows: mut sink, levels: smaller } = kind.create(&path, (4, 4), true).unwrap();
+        let mut smaller = smaller.unwrap();
         sink.write(0, levels[0].codes.as_ref()).unwrap();
         smaller.write(1, 0, rows(&kind, &levels[1], 0, 1)).unwrap();
         smaller.write(2, 0, levels[2].codes.as_ref()).unwrap();
@@ -78,7 +77,6 @@ fn a_file_without_all_its_rows_does_not_appear() {
             let error = smaller.write(level, 0, CodesRef::U8(&[0; 3])).unwrap_err().to_string();
             assert_eq!(error, format!("level is {level}: it must be from 1 to 2"));
         }
-        drop(smaller);
         let error = sink.finish().unwrap_err().to_string();
         assert_eq!(error, "mips is without 1 rows of the smaller levels: it must be complete");
     }

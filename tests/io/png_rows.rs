@@ -173,7 +173,7 @@ fn a_map_that_wraps_goes_back_into_exr() {
         let edges = Edges { x: Edge::Wrap, y: Edge::Wrap };
         let options = BakeOptions { normal: Some(normal), edges, ..Default::default() };
         let create = |size: Size| {
-            Ok(Maps { normal: Some(create_normals(&output, size, normal)?), parallax: None, roughness: None })
+            Ok(Maps { normal: Some(create_normals(&output, size, normal)?.into()), parallax: None, roughness: None })
         };
         let open = || Ok(open_heights(&input, &ReadOptions::default())?.rows);
         Baker::cpu().bake_rows(&open, &create, &options, &Monitor::default()).unwrap();

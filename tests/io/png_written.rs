@@ -63,10 +63,10 @@ impl Picture {
         let options = WriteOptions { compression, ..Default::default() };
         if self.channels == 1 {
             let parallax = ParallaxFormat { encoding: Encoding::Biased, depth: self.depth };
-            return create_parallax_with(path, size, parallax, &options).unwrap();
+            return create_parallax_with(path, size, parallax, &options).unwrap().rows;
         }
         let channels = if self.channels == 2 { Channels::Xy } else { Channels::Xyz };
-        create_normals_with(path, size, format(Encoding::Unorm, self.depth, channels), &options).unwrap()
+        create_normals_with(path, size, format(Encoding::Unorm, self.depth, channels), &options).unwrap().rows
     }
 
     /// The bytes of its file, whose rows come one by one.

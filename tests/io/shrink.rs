@@ -139,7 +139,7 @@ fn baked_from(baker: &texbake::Baker, path: &Path, read: &ReadOptions, options: 
     let open = || Ok(texbake::io::open_heights(path, read)?.rows);
     let create = |size| {
         let sink = texbake::io::create_normals(&output, size, options.normal.unwrap())?;
-        Ok(Maps { normal: Some(sink), parallax: None, roughness: None })
+        Ok(Maps { normal: Some(sink.into()), parallax: None, roughness: None })
     };
     baker.bake_rows(&open, &create, options, &Monitor::default()).unwrap();
     let map = texbake::NormalMap::read(&output).unwrap();

@@ -39,8 +39,8 @@ fn assert_streams(
     let names = ["normal", "parallax"].map(|name| folder.join(format!("{name}.{extension}")));
     let (normal, parallax) = (options.normal.unwrap(), options.parallax.unwrap());
     let create = |size| -> Result<_> {
-        let normal = Some(create_normals(&names[0], size, normal)?);
-        Ok(Maps { normal, parallax: Some(create_parallax(&names[1], size, parallax)?), roughness: None })
+        let normal = Some(create_normals(&names[0], size, normal)?.into());
+        Ok(Maps { normal, parallax: Some(create_parallax(&names[1], size, parallax)?.into()), roughness: None })
     };
     let open = || Ok(open_heights(input, read)?.rows);
     let baker = Baker::cpu();

@@ -4,7 +4,7 @@ use super::assert_levels;
 use crate::stream::MemorySource;
 use crate::support::{EDGES, Image, Random, UNORM16, every_baker, map_f32, map_u8, map_u16, options};
 use std::sync::{Arc, Mutex};
-use texbake::stream::{HeightRows, LevelSink, Monitor, RowSink, RowsOut};
+use texbake::stream::{HeightRows, LevelSink, MapOut, Monitor, RowSink};
 use texbake::{
     BakeOptions, Baker, CodesRef, Edge, Edges, HeightMap, Maps, NormalMap, NormalOptions, ParallaxFormat, Result,
     RoughnessMethod, RoughnessOptions, Size,
@@ -24,7 +24,6 @@ struct Sink {
     widths: Vec<usize>,
     texel_bytes: usize,
     first_row_last: bool,
-    has_levels: bool,
 }
 
 impl Sink {
@@ -49,12 +48,6 @@ impl RowSink for Sink {
     fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
         self.put(0, first, rows);
         Ok(())
-    }
-
-    fn levels(&mut self) -> Option<Box<dyn LevelSink>> {
-        let Self { written, widths, texel_bytes, .. } = self;
-        let levels = Sink { written: written.clone(), widths: widths.clone(), texel_bytes: *texel_bytes, ..*self };
-        self.has_levels.then(|| Box::new(Levels(levels)) as Box<dyn LevelSink>)
     }
 
     fn complete(&mut self) -> Result<()> {
@@ -91,8 +84,9 @@ fn bake(
     let create = |size: Size| {
         let widths: Vec<usize> = size.levels().map(|size| size.width()).collect();
         let sink = |written: &Written, texel_bytes| {
-            let widths = widths.clone();
-            Box::new(Sink { written: written.clone(), widths, texel_bytes, first_row_last, has_levels }) as RowsOut
+            let sink = || Sink { written: written.clone(), widths: widths.clone(), texel_bytes, first_row_last };
+            let levels = has_levels.then(|| Box::new(Levels(sink())) as Box<dyn LevelSink>);
+            MapOut { rows: Box::new(sink()), levels }
         };
         let [normal, parallax, roughness] = &written;
         Ok(Maps {

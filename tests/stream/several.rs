@@ -60,7 +60,7 @@ fn bake(spoil: impl Fn(&mut Sink, &str)) -> (Result<()>, usize, [Vec<u8>; 2]) {
             let (bytes, named) = (bytes.clone(), named.clone());
             let mut sink = Sink { bytes, named, row_codes, cannot_write: None, cannot_complete: false };
             spoil(&mut sink, name);
-            Some(Box::new(sink) as RowsOut)
+            Some((Box::new(sink) as RowsOut).into())
         };
         Ok(Maps {
             normal: sink("normal", 3 * size.width(), &bytes[0]),

@@ -45,10 +45,8 @@ struct LevelRows {
     waiting: Vec<BlockRow>,
 }
 
-/// The largest level, and the others until they are asked for.
 struct TextureEncoder {
     largest: LevelRows,
-    smaller: Option<SmallerLevels>,
     /// Rows of the smaller levels that have not come.
     rows_left: Arc<AtomicUsize>,
     held_bytes: usize,
@@ -64,14 +62,14 @@ pub(in crate::io) fn check(path: &Path, format: TexelFormat, blocks: Option<Bloc
     TextureFormat::of(path, format, blocks).map(drop)
 }
 
-/// Creates a KTX2 or DDS file of one level or of all.
+/// Creates a KTX2 or DDS file of one level, or of all with what takes the smaller ones.
 pub(in crate::io) fn create(
     path: &Path,
     container: Container,
     size: Size,
     codes: TexelFormat,
     options: &WriteOptions,
-) -> Result<Box<FileSink>> {
+) -> Result<(Box<FileSink>, Option<Box<dyn LevelSink>>)> {
     let format = TextureFormat::of(path, codes, options.blocks)?;
     let mut levels = levels(size, options.mips, &format);
     let header = match container {
@@ -88,9 +86,10 @@ pub(in crate::io) fn create(
     let largest = rows(&levels[0]);
     let smaller = levels[1..].iter().map(|level| (expected(level), rows(level))).collect();
     let rows_left = Arc::new(AtomicUsize::new(levels[1..].iter().map(|level| level.height).sum()));
-    let smaller = (levels.len() > 1).then(|| SmallerLevels { levels: smaller, rows_left: rows_left.clone() });
+    let smaller = SmallerLevels { levels: smaller, rows_left: rows_left.clone() };
+    let smaller = (levels.len() > 1).then(|| Box::new(smaller) as Box<dyn LevelSink>);
     let held_bytes = held_bytes(&format, &levels);
-    Ok(FileSink::boxed(TextureEncoder { largest, smaller, rows_left, held_bytes }, replacement, size, codes))
+    Ok((FileSink::boxed(TextureEncoder { largest, rows_left, held_bytes }, replacement, size, codes), smaller))
 }
 
 /// The most bytes that wait for others, or are being made: texels of the largest level and of one of the others at the
@@ -166,10 +165,6 @@ impl RowEncoder for TextureEncoder {
 
     fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
         self.largest.write(first, rows)
-    }
-
-    fn levels(&mut self) -> Option<Box<dyn LevelSink>> {
-        self.smaller.take().map(|levels| Box::new(levels) as Box<dyn LevelSink>)
     }
 
     fn finish(self: Box<Self>) -> Result<()> {

@@ -3,7 +3,8 @@
 use super::{BakeOptions, Filter};
 use crate::error::{Error, Result};
 use crate::exact::AxisScale;
-use crate::map::{Convention, Edges, HeightType, NormalFormat, ParallaxFormat, Size, TexelFormat};
+use crate::map::{Convention, Edges, HeightType, Maps, NormalFormat, ParallaxFormat, Size, TexelFormat};
+use crate::mips::RoughnessOptions;
 use crate::ops::Precision;
 
 /// A slope stencil as data.
@@ -73,6 +74,8 @@ pub(crate) struct BakePlan {
     pub slope: Slope,
     pub normal: Option<NormalFormat>,
     pub parallax: Option<ParallaxFormat>,
+    /// What is made beside the maps that a backend bakes.
+    pub roughness: Option<RoughnessOptions>,
     pub precision: Precision,
     /// The scale that the bake really uses.
     pub scale: AxisScale,
@@ -89,10 +92,8 @@ impl BakePlan {
     /// # Errors
     /// [`crate::Error::Parameter`] names the option that is out of range.
     pub fn new(options: &BakeOptions, size: Size, height_type: HeightType) -> Result<Self> {
-        let BakeOptions { edges, normal, parallax, precision, .. } = *options;
-        let outputs = [normal.map(|format| format.texel()), parallax.map(|format| format.texel())];
-        outputs.iter().flatten().try_for_each(TexelFormat::check)?;
-        if outputs == [None; 2] {
+        let BakeOptions { edges, normal, parallax, roughness, precision, .. } = *options;
+        if normal.is_none() && parallax.is_none() {
             return Err(Error::parameter("maps", "none", "normal, parallax or both"));
         }
         let scale = options.scale.resolve(size)?;
@@ -112,18 +113,25 @@ impl BakePlan {
                 Slope::Float(FloatSlope::new(-scale.x, y, divisor))
             }
         };
-        Ok(Self { size, height_type, stencil, edges, slope, normal, parallax, precision, scale })
+        let plan = Self { size, height_type, stencil, edges, slope, normal, parallax, roughness, precision, scale };
+        plan.formats().iter().try_for_each(TexelFormat::check)?;
+        roughness.as_ref().map_or(Ok(()), RoughnessOptions::check)?;
+        Ok(plan)
     }
 
-    /// The formats of the maps that are baked: normal, then parallax.
+    /// The formats of all maps.
+    pub fn formats(&self) -> Maps<TexelFormat> {
+        Maps {
+            normal: self.normal.map(|format| format.texel()),
+            parallax: self.parallax.map(|format| format.texel()),
+            roughness: self.roughness.map(|options| options.format.texel()),
+        }
+    }
+
+    /// Those of the maps that a backend bakes: normal, then parallax.
     pub fn outputs(&self) -> impl Iterator<Item = TexelFormat> {
-        let normal = self.normal.map(|format| format.texel());
-        normal.into_iter().chain(self.parallax.map(|format| format.texel()))
-    }
-
-    /// Bytes of all codes of a texel.
-    pub fn texel_bytes(&self) -> usize {
-        self.outputs().map(|format| format.bytes()).sum()
+        let Maps { normal, parallax, .. } = self.formats();
+        normal.into_iter().chain(parallax)
     }
 
     /// The slope constants in floats, whatever the heights are: what `fast` computes with on a GPU.
