@@ -1,6 +1,6 @@
 //! Height maps into normal and parallax maps.
 
-use super::memory::{job_bytes, level_bytes};
+use super::memory::bake_bytes;
 use super::write::{WatchedRows, finish, whole_sink};
 use super::{Baker, Ran};
 use crate::backend::RowBytes;
@@ -165,18 +165,10 @@ impl Baker {
                 let range = "a .ktx2 or .dds file with mips";
                 return Err(Error::parameter("roughness", "a map without mip levels", range));
             }
-            let order = match (plan.edges.y, plan.size.height()) {
-                (Edge::Wrap, height) if height > 1 && maps.iter().all(|map| map.rows.takes_first_row_last()) => {
-                    RowOrder::FirstRowLast
-                }
-                _ => RowOrder::FromTop,
-            };
+            let order = order_of_rows(&plan, &maps);
             let is_held = is_held(&plan, source.as_ref(), order);
             let held_map = if is_held { plan.map_bytes() as u64 } else { 0 };
-            let row = RowBytes::of_bake(&plan);
-            let passing = job_bytes(backend, row, plan.size.height(), maps.iter().map(|map| &map.rows));
-            let levels = level_bytes(backend, &plan, &maps);
-            let _memory = turn.take(source.held_bytes() + held_map + passing + levels, monitor)?;
+            let _memory = turn.take(source.held_bytes() + held_map + bake_bytes(backend, &plan, &maps), monitor)?;
 
             // The texels of the first map are those of the others: they are counted once.
             let mut row_texels = plan.size.width();
@@ -185,7 +177,8 @@ impl Baker {
                 Ok((WatchedRows::new(writer, std::mem::take(&mut row_texels), monitor), map.levels))
             })?;
             let sinks = maps.as_mut().map(|(largest, levels)| MapSinks { largest, levels: levels.take() });
-            let (bake, band_rows) = (Bake { backend, plan: &plan, order }, backend.band_rows(row));
+            let bake = Bake { backend, plan: &plan, order };
+            let band_rows = backend.band_rows(RowBytes::of_bake(&plan));
             if is_held {
                 let map = read_map_watched(source.as_mut(), monitor)?;
                 drop(source);
@@ -198,6 +191,13 @@ impl Baker {
         })?;
         Ok(Baked { ran, size: plan.size, height_type: plan.height_type, scale: plan.scale })
     }
+}
+
+/// The order that spares a source that wraps from bottom to top a second reading, if all sinks let it.
+fn order_of_rows(plan: &BakePlan, maps: &Maps<MapOut>) -> RowOrder {
+    let wraps = plan.edges.y == Edge::Wrap && plan.size.height() > 1;
+    let first_row_last = wraps && maps.iter().all(|map| map.rows.takes_first_row_last());
+    if first_row_last { RowOrder::FirstRowLast } else { RowOrder::FromTop }
 }
 
 /// Whether the heights are held in memory, since their last row is needed first, and far.

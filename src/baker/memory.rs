@@ -29,8 +29,9 @@ pub(super) fn job_bytes<'a>(
     (FIXED_BYTES + bands) as u64 + backend.held_bytes(row) + held_by_sinks
 }
 
-/// The most bytes that a bake holds besides for the smaller levels of its maps.
-pub(super) fn level_bytes(backend: &dyn Backend, plan: &BakePlan, maps: &Maps<MapOut>) -> u64 {
+/// The same of a bake, with the smaller levels of its maps.
+pub(super) fn bake_bytes(backend: &dyn Backend, plan: &BakePlan, maps: &Maps<MapOut>) -> u64 {
     let threads = backend.host_threads().map_or_else(rayon::current_num_threads, ThreadPool::current_num_threads);
-    mips::held_bytes(plan, maps, threads)
+    let sinks = maps.iter().map(|map| &map.rows);
+    job_bytes(backend, RowBytes::of_bake(plan), plan.size.height(), sinks) + mips::held_bytes(plan, maps, threads)
 }

@@ -8,7 +8,7 @@
 //! the range too near to it. What BC7 blocks decode to is defined to the bit.
 
 use super::blocks::Component;
-use super::device::gpus;
+use super::device::{devices, has, load};
 use super::made::{KINDS, Kind, Level, Made, bc7};
 use super::parsed::by_specification;
 use crate::io::support::Folder;
@@ -68,21 +68,21 @@ fn excess(kind: &Kind, level: &Level, bytes: &[u8], texels: &[[f32; 4]]) -> f64 
 fn every_device_samples_what_was_written() {
     let folder = Folder::new();
     let mut with_blocks = 0;
-    for gpu in gpus() {
-        for kind in KINDS.iter().filter(|kind| gpu.has(kind)) {
+    for (name, gpu) in devices() {
+        for kind in KINDS.iter().filter(|kind| has(&gpu, kind)) {
             // Their largest level has whole blocks, which WebGPU asks for; the smaller ones do not.
             for (size, container) in [((64, 64), "ktx2"), ((20, 12), "dds"), ((4, 36), "ktx2")] {
                 let made = Made::new(&folder, *kind, size, true, container);
                 let bytes = by_specification(&made.bytes(), &made).unwrap();
-                let loaded = gpu.load(kind, &made.levels, &bytes);
+                let loaded = load(&gpu, kind, &made.levels, &bytes);
                 for ((level, texels), bytes) in made.levels.iter().zip(&loaded).zip(&bytes) {
                     if kind.vulkan == 145 {
                         let codes: Vec<u8> = texels.iter().flatten().map(|v| (v * 255.0).round() as u8).collect();
-                        assert!(codes == bc7(bytes, level), "{}: {}", gpu.name, made.path.display());
+                        assert!(codes == bc7(bytes, level), "{name}: {}", made.path.display());
                         continue;
                     }
                     let excess = excess(kind, level, bytes, texels);
-                    assert!(excess <= 0.0, "{}: {}: {excess} too much", gpu.name, made.path.display());
+                    assert!(excess <= 0.0, "{name}: {}: {excess} too much", made.path.display());
                 }
                 with_blocks += usize::from(kind.blocks.is_some());
                 // The comparison is awake.
@@ -93,7 +93,7 @@ fn every_device_samples_what_was_written() {
                 }
             }
         }
-        println!("{}: {} kinds", gpu.name, KINDS.iter().filter(|kind| gpu.has(kind)).count());
+        println!("{name}: {} kinds", KINDS.iter().filter(|kind| has(&gpu, kind)).count());
     }
     let required = std::env::var("TEXBAKE_REQUIRE_GPU").is_ok_and(|value| value == "1");
     assert!(!required || with_blocks > 0, "no device has blocks");

@@ -6,7 +6,7 @@ use block_compression::{BC7Settings, CompressionVariant};
 use std::path::PathBuf;
 use texbake::io::{BlockCompression, WriteOptions, create_normals_with, create_parallax_with};
 use texbake::stream::MapOut;
-use texbake::{Channels, Codes, Depth, Encoding, NormalFormat, ParallaxFormat, Result, Size};
+use texbake::{Channels, Codes, CodesRef, Depth, Encoding, NormalFormat, ParallaxFormat, Result, Size};
 
 use BlockCompression::{Bc4, Bc5, Bc7};
 use Depth::{Bits8, Bits16, Float16, Float32};
@@ -102,13 +102,23 @@ impl Kind {
     /// Creates a file of this kind.
     pub fn create(&self, path: &std::path::Path, (width, height): (usize, usize), mips: bool) -> Result<MapOut> {
         let options = WriteOptions { mips, blocks: self.blocks, ..WriteOptions::default() };
-        let (size, encoding, depth) = (Size::new(width, height)?, self.encoding, self.depth);
-        let normal = |channels| NormalFormat { encoding, depth, channels, ..NormalFormat::default() };
-        match self.channels {
-            1 => create_parallax_with(path, size, ParallaxFormat { encoding, depth }, &options),
-            2 => create_normals_with(path, size, normal(Channels::Xy), &options),
-            _ => create_normals_with(path, size, normal(Channels::Xyz), &options),
+        let size = Size::new(width, height)?;
+        match self.normal() {
+            Some(format) => create_normals_with(path, size, format, &options),
+            None => create_parallax_with(path, size, self.parallax(), &options),
         }
+    }
+
+    /// The normal map that it holds; `None`: it holds a parallax map.
+    pub fn normal(&self) -> Option<NormalFormat> {
+        let Self { encoding, depth, .. } = *self;
+        let channels = [None, Some(Channels::Xy), Some(Channels::Xyz)][self.channels - 1]?;
+        Some(NormalFormat { encoding, depth, channels, ..NormalFormat::default() })
+    }
+
+    /// The parallax map of its encoding and depth.
+    pub fn parallax(&self) -> ParallaxFormat {
+        ParallaxFormat { encoding: self.encoding, depth: self.depth }
     }
 
     /// Noise for all levels, which need not be means of each other to be told apart.
@@ -186,15 +196,8 @@ impl Made {
         let name = format!("{}_{}x{}_{}.{container}", kind.name(), size.0, size.1, if mips { "mips" } else { "one" });
         let path = folder.path(&name);
         let levels = kind.levels(size, mips);
-        let MapOut { mut rows, levels: smaller } = kind.create(&path, size, mips).unwrap();
-        assert_eq!(smaller.is_some(), levels.len() > 1, "{name}");
-        rows.write(0, levels[0].codes.as_ref()).unwrap();
-        if let Some(mut smaller) = smaller {
-            for (at, level) in levels.iter().enumerate().skip(1) {
-                smaller.write(at, 0, level.codes.as_ref()).unwrap();
-            }
-        }
-        rows.finish().unwrap();
+        let codes: Vec<CodesRef<'_>> = levels.iter().map(|level| level.codes.as_ref()).collect();
+        write_at_once(kind.create(&path, size, mips).unwrap(), &codes);
         Self { path, kind, levels }
     }
 
@@ -218,6 +221,17 @@ impl Made {
     pub fn is_ktx2(&self) -> bool {
         self.path.extension().unwrap() == "ktx2"
     }
+}
+
+/// Writes all rows of each level, the largest first.
+pub fn write_at_once(file: MapOut, levels: &[CodesRef<'_>]) {
+    let MapOut { mut rows, levels: smaller } = file;
+    assert_eq!(smaller.is_some(), levels.len() > 1);
+    rows.write(0, levels[0]).unwrap();
+    if let Some(mut smaller) = smaller {
+        (1..levels.len()).for_each(|level| smaller.write(level, 0, levels[level]).unwrap());
+    }
+    rows.finish().unwrap();
 }
 
 /// BC7 blocks by the decoder of `block_compression`: the format leaves a decoder no freedom.

@@ -1,5 +1,6 @@
 //! KTX2 and DDS files: what they hold by the specifications, by other readers, and on GPUs.
 
+mod angles;
 mod blocks;
 mod bytes;
 #[cfg(feature = "gpu")]
@@ -11,3 +12,4 @@ mod parsed;
 mod readers;
 mod refused;
 mod rows;
+mod streamed;

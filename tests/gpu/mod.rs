@@ -1,6 +1,6 @@
 //! Bakes on a device of the host's: the same bytes from buffers and textures, in the host's own encoder.
 
-use crate::support::{FORMATS, Image, Random, every_baker, map_f32, map_u8, map_u16, options};
+use crate::support::{FORMATS, Gpu, Image, Random, every_baker, extent, map_f32, map_u8, map_u16, options};
 use std::sync::OnceLock;
 use texbake::gpu::{CodeTarget, HeightSource, Hosted, wgpu};
 use texbake::{
@@ -9,35 +9,15 @@ use texbake::{
 };
 use wgpu::{BufferUsages, TextureFormat, TextureUsages};
 
-struct Host {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
-}
-
 /// Lavapipe, opened as a host program would; `None` where it is not installed.
-fn host() -> Option<&'static Host> {
-    static HOST: OnceLock<Option<Host>> = OnceLock::new();
+fn host() -> Option<&'static Gpu> {
+    static HOST: OnceLock<Option<Gpu>> = OnceLock::new();
     HOST.get_or_init(|| open_host(wgpu::Limits::default())).as_ref()
 }
 
 /// Another one, with these limits.
-fn open_host(required_limits: wgpu::Limits) -> Option<Host> {
-    let open = || {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-            backends: wgpu::Backends::VULKAN,
-            ..wgpu::InstanceDescriptor::new_without_display_handle()
-        });
-        let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
-        let adapter = adapters.into_iter().find(|adapter| adapter.get_info().name.contains("llvmpipe"))?;
-        let descriptor = wgpu::DeviceDescriptor {
-            required_features: wgpu::Features::TEXTURE_FORMAT_16BIT_NORM,
-            required_limits,
-            ..Default::default()
-        };
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).ok()?;
-        Some(Host { device, queue })
-    };
-    let host = open();
+fn open_host(limits: wgpu::Limits) -> Option<Gpu> {
+    let host = Gpu::open("vulkan:llvmpipe", wgpu::Features::TEXTURE_FORMAT_16BIT_NORM, limits);
     if host.is_none() {
         println!("not tested: no lavapipe to host a bake");
         assert!(std::env::var_os("TEXBAKE_REQUIRE_GPU").is_none_or(|value| value != "1"), "no lavapipe");
@@ -45,65 +25,14 @@ fn open_host(required_limits: wgpu::Limits) -> Option<Host> {
     host
 }
 
-impl Host {
-    fn buffer(&self, bytes: usize, usage: BufferUsages) -> wgpu::Buffer {
-        self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: bytes as u64,
-            usage,
-            mapped_at_creation: false,
-        })
+/// Writes rows of `row` bytes, each padded to `pitch`.
+fn write(host: &Gpu, buffer: &wgpu::Buffer, bytes: &[u8], row: usize, pitch: usize) {
+    let mut padded = Vec::new();
+    for row in bytes.chunks(row) {
+        padded.extend_from_slice(row);
+        padded.resize(padded.len().next_multiple_of(pitch), 0xa5);
     }
-
-    fn texture(&self, size: Size, format: TextureFormat, usage: TextureUsages) -> wgpu::Texture {
-        self.device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: extent(size),
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage,
-            view_formats: &[],
-        })
-    }
-
-    /// The bytes of a buffer, read back as a host might.
-    fn read(&self, buffer: &wgpu::Buffer) -> Vec<u8> {
-        let copy = self.buffer(buffer.size() as usize, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
-        let mut encoder = self.device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, buffer.size());
-        self.queue.submit([encoder.finish()]);
-        copy.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
-        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
-        copy.get_mapped_range(..).expect("mapped").to_vec()
-    }
-
-    /// Rows of a texture, without padding.
-    fn read_texture(&self, texture: &wgpu::Texture, size: Size, texel_bytes: usize) -> Vec<u8> {
-        let (row, pitch) = (size.width() * texel_bytes, (size.width() * texel_bytes).next_multiple_of(256));
-        let buffer = self.buffer(pitch * size.height(), BufferUsages::COPY_DST | BufferUsages::COPY_SRC);
-        let mut encoder = self.device.create_command_encoder(&Default::default());
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch as u32), rows_per_image: None };
-        let target = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
-        encoder.copy_texture_to_buffer(texture.as_image_copy(), target, extent(size));
-        self.queue.submit([encoder.finish()]);
-        self.read(&buffer).chunks(pitch).flat_map(|padded| padded[..row].to_vec()).collect()
-    }
-
-    /// Writes rows of `row` bytes, each padded to `pitch`.
-    fn write(&self, buffer: &wgpu::Buffer, bytes: &[u8], row: usize, pitch: usize) {
-        let mut padded = Vec::new();
-        for row in bytes.chunks(row) {
-            padded.extend_from_slice(row);
-            padded.resize(padded.len().next_multiple_of(pitch), 0xa5);
-        }
-        self.queue.write_buffer(buffer, 0, &padded);
-    }
-}
-
-fn extent(size: Size) -> wgpu::Extent3d {
-    wgpu::Extent3d { width: size.width() as u32, height: size.height() as u32, depth_or_array_layers: 1 }
+    host.queue.write_buffer(buffer, 0, &padded);
 }
 
 fn height_bytes(map: &HeightMap) -> Vec<u8> {
@@ -132,13 +61,13 @@ fn code_bytes(map: &NormalMap) -> &[u8] {
 }
 
 /// The rows that a host gets in a buffer, without padding.
-fn baked(host: &Host, hosted: &Hosted, map: &HeightMap, options: &NormalOptions) -> Vec<u8> {
+fn baked(host: &Gpu, hosted: &Hosted, map: &HeightMap, options: &NormalOptions) -> Vec<u8> {
     let bake = hosted.normal(map.size(), map.height_type(), options).unwrap();
     let size = map.size();
     let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
     let heights = host.buffer(bake.heights_row_bytes() * size.height(), usage);
     let codes = host.buffer(bake.codes_row_bytes() * size.height(), usage);
-    host.write(&heights, &height_bytes(map), size.width() * map.height_type().bytes(), bake.heights_row_bytes());
+    write(host, &heights, &height_bytes(map), size.width() * map.height_type().bytes(), bake.heights_row_bytes());
 
     let mut encoder = host.device.create_command_encoder(&Default::default());
     bake.encode(&mut encoder, HeightSource::Buffer(heights.slice(..)), CodeTarget::Buffer(codes.slice(..))).unwrap();
@@ -199,11 +128,11 @@ fn textures_get_the_reference_codes_and_an_opaque_alpha() {
             let format = NormalFormat { encoding, depth, ..Default::default() };
             let options = NormalOptions { edges: Edges::both(Edge::Clamp), ..options("24", format) };
             let size = map.size();
-            let heights = host.texture(size, source, TextureUsages::COPY_SRC | TextureUsages::COPY_DST);
+            let heights = host.texture(size, 1, source, TextureUsages::COPY_SRC | TextureUsages::COPY_DST);
             let row = (size.width() * map.height_type().bytes()) as u32;
             let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
             host.queue.write_texture(heights.as_image_copy(), &height_bytes(&map), layout, extent(size));
-            let codes = host.texture(size, target, TextureUsages::COPY_SRC | TextureUsages::COPY_DST);
+            let codes = host.texture(size, 1, target, TextureUsages::COPY_SRC | TextureUsages::COPY_DST);
 
             let bake = hosted.normal(size, map.height_type(), &options).unwrap();
             let mut encoder = host.device.create_command_encoder(&Default::default());
@@ -213,7 +142,7 @@ fn textures_get_the_reference_codes_and_an_opaque_alpha() {
             let expected = Baker::reference().normal(&map, &options).unwrap();
             let texels = code_bytes(&expected).chunks(3 * depth.bytes());
             let with_alpha: Vec<u8> = texels.flat_map(|texel| [texel, &alpha].concat()).collect();
-            let baked = host.read_texture(&codes, size, 4 * depth.bytes());
+            let baked = host.read_texture(&codes, 4 * depth.bytes());
             assert!(baked == with_alpha, "{} heights to {target:?}", map.height_type());
         }
     }
@@ -226,12 +155,12 @@ fn resources_that_do_not_fit_are_errors_that_say_so() {
     let size = Size::new(8, 8).unwrap();
     let bake = hosted.normal(size, HeightType::U16, &NormalOptions::default()).unwrap();
     let storage = |bytes| host.buffer(bytes, BufferUsages::STORAGE);
-    let texture = |format, usage| host.texture(size, format, usage);
+    let texture = |format, usage| host.texture(size, 1, format, usage);
     let (good, small) = (storage(1024), storage(64));
     let copies = TextureUsages::COPY_SRC | TextureUsages::COPY_DST;
     let srgb = texture(TextureFormat::Rgba8UnormSrgb, copies);
     let unusable = texture(TextureFormat::Rgba8Unorm, TextureUsages::TEXTURE_BINDING);
-    let wide = host.texture(Size::new(9, 8).unwrap(), TextureFormat::R16Unorm, copies);
+    let wide = host.texture(Size::new(9, 8).unwrap(), 1, TextureFormat::R16Unorm, copies);
     let unbound = host.buffer(1024, BufferUsages::COPY_DST);
     for (heights, codes, message) in [
         (

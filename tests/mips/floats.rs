@@ -57,6 +57,13 @@ fn larger_sizes_are_right() {
     }
 }
 
+/// A strip has 2^17 texels: here a map has three, rows of levels that two of them share, and all levels come from level 0.
+#[test]
+fn a_map_of_several_strips_is_right() {
+    let mut random = Random::new(84);
+    assert_right("cpu", &Baker::cpu(), &uneven(&mut random, 601, 500), 7);
+}
+
 #[test]
 fn every_device_has_the_same_levels() {
     let mut random = Random::new(83);

@@ -85,6 +85,14 @@ fn larger_sizes_are_right() {
     }
 }
 
+/// A strip has 2^17 texels: here a map has three, and rows of levels that two of them share.
+#[test]
+fn a_map_of_several_strips_is_right() {
+    let mut random = Random::new(75);
+    let map = map_u16(700, 400, |_, _| random.bits() as u16);
+    assert_right("cpu", &Baker::cpu(), &map, options("24", UNORM16), ParallaxFormat::default());
+}
+
 #[test]
 fn every_encoding_edge_and_filter_is_right() {
     let mut random = Random::new(73);

@@ -1,6 +1,7 @@
-//! Roughness of levels: closed forms of what filtering removes.
+//! Roughness of levels: what filtering removes, by the definitions and by closed forms.
 
-use crate::support::{map_f32, map_u8, map_u16, scale};
+use crate::oracle::{SCATTERED, roughness};
+use crate::support::{FILTERS, Random, every_edges, map_f32, map_u8, map_u16, scale};
 use texbake::{
     BakeOptions, Baker, CodesRef, Depth, HeightMap, RoughnessFormat, RoughnessMap, RoughnessMethod, RoughnessOptions,
 };
@@ -28,6 +29,58 @@ fn codes(map: &RoughnessMap) -> &[u16] {
 /// The code of alpha^2: the roughness is its fourth root.
 fn code_of(alpha_squared: f64) -> f64 {
     65_535.0 * alpha_squared.min(1.0).powf(0.25)
+}
+
+const METHODS: [RoughnessMethod; 2] = [RoughnessMethod::Lean, RoughnessMethod::Toksvig];
+
+/// How far codes are from half a code of what they stand for, at most, beyond what f64 explains. What is scattered is the
+/// difference of two sums, to which each row and column adds a product and a sum that are rounded by 2^-53, and at least
+/// [`SCATTERED`] of them; the roughness is its fourth root.
+fn excess(levels: &[RoughnessMap], expected: &[(texbake::Size, Vec<f64>)]) -> f64 {
+    assert_eq!(levels.len(), expected.len());
+    let sides = levels[0].size().width() + levels[0].size().height();
+    let sums = 2.0 * sides as f64 * f64::EPSILON / SCATTERED / 4.0;
+    let of_level = |(level, (size, expected)): (&RoughnessMap, &(_, Vec<f64>))| {
+        assert_eq!((level.size(), codes(level).len()), (*size, expected.len()));
+        let off = |(code, expected): (&u16, &f64)| (f64::from(*code) - 65_535.0 * expected).abs();
+        codes(level).iter().zip(expected).map(off).fold(0.0, f64::max)
+    };
+    levels.iter().zip(expected).map(of_level).fold(0.0, f64::max) - 0.5 - 65_535.0 * sums
+}
+
+/// By the definitions: sizes that levels cut, and one of several strips.
+#[test]
+fn any_map_has_the_roughness_of_what_it_loses() {
+    let mut random = Random::new(93);
+    let edges: Vec<_> = every_edges().collect();
+    let sizes =
+        [[1, 1], [2, 1], [5, 3], [7, 1], [1, 9], [13, 13], [37, 22], [64, 64], [100, 37], [255, 63], [601, 500]];
+    for (turn, [width, height]) in sizes.into_iter().enumerate() {
+        let maps = [
+            map_u8(width, height, |_, _| random.bits() as u8),
+            map_u16(width, height, |_, _| random.bits() as u16),
+            // Multiples of 1/64, so that stencils are exact in f32.
+            map_f32(width, height, |_, _| random.below(65) as f32 / 64.0),
+        ];
+        for (at, map) in maps.iter().enumerate().take(if width > 600 { 1 } else { 3 }) {
+            let turn = 3 * turn + at;
+            let (base, scale) = (["0", "0.25", "0.7", "1"][turn % 4], ["0.1", "1", "7/3"][turn / 2 % 3]);
+            let with = |method| BakeOptions {
+                filter: FILTERS[turn % 4],
+                edges: edges[turn % 9],
+                ..options(method, base, scale)
+            };
+            for method in METHODS {
+                let excess = excess(&levels(map, &with(method)), &roughness(map, &with(method)));
+                assert!(excess <= 0.0, "{method}, {} of {}, turn {turn}: {excess}", map.height_type(), map.size());
+            }
+            // The comparison is awake: either method is noticed in the place of the other.
+            if base != "1" && scale != "0.1" && width * height > 100 {
+                let [lean, toksvig] = METHODS.map(with);
+                assert!(excess(&levels(map, &lean), &roughness(map, &toksvig)) > 100.0, "turn {turn}");
+            }
+        }
+    }
 }
 
 /// Rows 0, 0, 255, 255 repeat, so slopes along x are a, a, -a, -a with a = s/2: two by two they agree, four by four they
@@ -73,7 +126,7 @@ fn a_plane_stays_as_smooth_as_it_is() {
     let planes =
         [map_u16(99, 99, |x, y| (300 * x + 200 * y) as u16), map_f32(99, 99, |x, y| (3 * x + 2 * y) as f32 / 64.0)];
     for map in &planes {
-        for method in [RoughnessMethod::Lean, RoughnessMethod::Toksvig] {
+        for method in METHODS {
             for base in ["0", "0.5"] {
                 let flat = (base.parse::<f64>().expect("a number") * 65_535.0 + 0.5).floor() as u16;
                 let levels = levels(map, &options(method, base, "24"));
@@ -93,8 +146,7 @@ fn a_plane_stays_as_smooth_as_it_is() {
 #[test]
 fn methods_agree_on_small_slopes() {
     let map = map_u16(64, 64, |x, y| ((x * 7919 + y * 104_729) % 1009) as u16);
-    let [lean, toksvig] =
-        [RoughnessMethod::Lean, RoughnessMethod::Toksvig].map(|method| levels(&map, &options(method, "0", "1")));
+    let [lean, toksvig] = METHODS.map(|method| levels(&map, &options(method, "0", "1")));
     for (lean, toksvig) in lean.iter().zip(&toksvig).skip(1) {
         for (lean, toksvig) in codes(lean).iter().zip(codes(toksvig)) {
             assert!(lean.abs_diff(*toksvig) <= 2, "{lean} and {toksvig}");

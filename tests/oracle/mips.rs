@@ -32,7 +32,7 @@ fn overlap(n: usize, count: usize, i: usize, x: usize) -> usize {
 }
 
 /// The texels of `n` that texel `i` of `count` covers, with what it covers of them.
-fn covered(n: usize, count: usize, i: usize) -> impl Iterator<Item = (usize, usize)> {
+pub(super) fn covered(n: usize, count: usize, i: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..n).map(move |x| (x, overlap(n, count, i, x))).filter(|(_, part)| *part > 0)
 }
 

@@ -11,6 +11,7 @@ mod mips;
 mod nearest_float;
 mod parallax;
 mod real;
+mod roughness;
 mod rounding;
 mod slopes;
 mod tangents;
@@ -24,6 +25,7 @@ pub use mips::{
 };
 pub use parallax::{parallax, parallax_with_normals};
 pub use real::{RealNormal, real_normals};
+pub use roughness::{SCATTERED, roughness};
 pub use slopes::slope_sums;
 pub use tangents::{TangentFormula, real_tangents};
 pub use texels::{UnormZero, components};

@@ -9,11 +9,12 @@
 
 use super::examined::f64s::{self, Vector};
 use super::examined::text_of;
-use crate::support::every_baker;
+use crate::support::{Gpu, gpus};
+use texbake::Size;
 use texbake::gpu::wgpu;
 
 /// Pixels along each side of the picture.
-const SIDE: u32 = 32;
+const SIDE: usize = 32;
 
 /// Share of its length that T or B may be off.
 const OFF: f64 = 0.00183 + 1.0 / (1 << 18) as f64;
@@ -48,24 +49,8 @@ struct Varying { @builtin(position) at: vec4<f32>, @location(0) p: vec3<f32>, @l
     return vec4<f32>(frame[2], 1.0);
 }";
 
-/// Devices of the same names as the bakers'.
-fn devices() -> Vec<(&'static str, wgpu::Device, wgpu::Queue)> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let names = every_baker().iter().map(|subject| subject.name).filter_map(|name| Some((name, name.split_once(':')?)));
-    let open = |(name, (api, adapter)): (&'static str, (&str, &str))| {
-        let backends = if api == "gl" { wgpu::Backends::GL } else { wgpu::Backends::VULKAN };
-        let adapters = pollster::block_on(instance.enumerate_adapters(backends));
-        let adapter = adapters.into_iter().find(|it| it.get_info().name.to_lowercase().contains(adapter)).unwrap();
-        let limits = wgpu::Limits::downlevel_defaults();
-        let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
-        (name, device, queue)
-    };
-    names.map(open).collect()
-}
-
 /// The pixels of a triangle that covers all of them.
-fn draw(device: &wgpu::Device, queue: &wgpu::Queue, library: &str, triangle: &Triangle) -> Vec<Pixel> {
+fn draw(gpu: &Gpu, library: &str, triangle: &Triangle) -> Vec<Pixel> {
     use wgpu::util::{BufferInitDescriptor, DeviceExt};
     let pad = |corner: usize| {
         let Triangle { clip, p, uv, n } = triangle;
@@ -73,74 +58,18 @@ fn draw(device: &wgpu::Device, queue: &wgpu::Queue, library: &str, triangle: &Tr
         [clip[corner], four(&p[corner]), four(&uv[corner]), four(n)].concat()
     };
     let corners: Vec<u8> = (0..3).flat_map(pad).flat_map(f32::to_le_bytes).collect();
-    let poison = vec![f32::NAN; (3 * 4 * SIDE * SIDE) as usize];
+    let poison = vec![f32::NAN; 3 * 4 * SIDE * SIDE];
     let poison: Vec<u8> = poison.into_iter().flat_map(f32::to_le_bytes).collect();
     let buffer =
-        |contents: &[u8], usage| device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
+        |contents: &[u8], usage| gpu.device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
     let corners = buffer(&corners, wgpu::BufferUsages::UNIFORM);
     let pixels = buffer(&poison, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
-    let read = buffer(&poison, wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
-    let target = device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba8Unorm,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
-        view_formats: &[],
-    });
-    let source = wgpu::ShaderSource::Wgsl(format!("{library}{DRAW}").into());
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
-    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: None,
-        layout: None,
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("corner"),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: Default::default(),
-        depth_stencil: None,
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("pixel"),
-            compilation_options: Default::default(),
-            targets: &[Some(wgpu::TextureFormat::Rgba8Unorm.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    });
-    let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: corners.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: pixels.as_entire_binding() },
-        ],
-    });
-    let mut encoder = device.create_command_encoder(&Default::default());
-    let view = target.create_view(&Default::default());
-    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations::default(),
-        })],
-        ..Default::default()
-    });
-    pass.set_pipeline(&pipeline);
-    pass.set_bind_group(0, &bindings, &[]);
-    pass.draw(0..3, 0..1);
-    drop(pass);
-    encoder.copy_buffer_to_buffer(&pixels, 0, &read, 0, pixels.size());
-    queue.submit([encoder.finish()]);
-    read.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
-    device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
-    let bytes = read.get_mapped_range(..).expect("mapped").to_vec();
+    let (size, format) = (Size::new(SIDE, SIDE).unwrap(), wgpu::TextureFormat::Rgba8Unorm);
+    let target = gpu.texture(size, 1, format, wgpu::TextureUsages::RENDER_ATTACHMENT);
+    let pipeline = gpu.pipeline(format!("{library}{DRAW}"), None, format);
+    let bindings = [corners.as_entire_binding(), pixels.as_entire_binding()];
+    gpu.draw(&pipeline, bindings, &target, wgpu::Color::TRANSPARENT);
+    let bytes = gpu.read(&pixels);
     let floats: Vec<f64> =
         bytes.chunks_exact(4).map(|word| f32::from_le_bytes(word.try_into().unwrap()).into()).collect();
     floats.chunks_exact(12).map(|pixel| [0, 4, 8].map(|at| [pixel[at], pixel[at + 1], pixel[at + 2]])).collect()
@@ -189,10 +118,10 @@ fn triangles() -> Vec<(String, Triangle)> {
 
 #[test]
 fn pixels_have_the_frame_of_their_triangle() {
-    for (name, device, queue) in devices() {
+    for (name, gpu) in gpus(wgpu::Features::empty()) {
         for (what, triangle) in triangles() {
             let [t, b] = truth(&triangle);
-            let pixels = draw(&device, &queue, text_of("cotangent_frame"), &triangle);
+            let pixels = draw(&gpu, text_of("cotangent_frame"), &triangle);
             for (at, [got_t, got_b, _]) in pixels.iter().enumerate() {
                 for (got, exact) in [(got_t, t), (got_b, b)] {
                     let off = f64s::angle(*got, exact);
@@ -212,11 +141,11 @@ fn pixels_have_the_frame_of_their_triangle() {
 /// dpdy goes down the picture; and exchanged derivatives are noticed.
 #[test]
 fn shortcuts_and_wrong_signs_are_seen_in_pixels() {
-    for (name, device, queue) in devices() {
+    for (name, gpu) in gpus(wgpu::Features::empty()) {
         for (what, triangle) in triangles() {
             let [t, _] = truth(&triangle);
             let worst = |library: &str, part: usize| {
-                let pixels = draw(&device, &queue, library, &triangle);
+                let pixels = draw(&gpu, library, &triangle);
                 pixels.iter().map(|pixel| f64s::angle(pixel[part], t)).fold(0.0, f64::max)
             };
             let text = text_of("cotangent_frame");

@@ -8,6 +8,8 @@ mod codes;
 mod compare;
 mod corners;
 mod fetched;
+#[cfg(feature = "gpu")]
+mod gpus;
 mod meshes;
 mod mikktspace;
 mod pairs;
@@ -26,6 +28,8 @@ pub use corners::{
     Corner, angle, assert_same_tangents, corner_tangents, corners, direction, result_differences, tangent_differences,
 };
 pub use fetched::fetched;
+#[cfg(feature = "gpu")]
+pub use gpus::{Gpu, extent, gpus};
 pub use meshes::{
     changed, cube, cylinder, cylinder_with_a_jump, degenerate_triangles, every_mesh, flat_mesh, hills, mesh,
     mirrored_halves, plane, pole, soup, sphere, star, torus, uneven, without_normals,

@@ -1,0 +1,71 @@
+//! What is written while it is baked has the bytes of the file that maps in memory are written to.
+
+use super::made::{CONTAINERS, KINDS, Kind, write_at_once};
+use crate::io::support::Folder;
+use crate::stream::MemorySource;
+use crate::support::{Random, every_edges, map_f32, map_u8, map_u16, scale};
+use texbake::stream::{HeightRows, MapOut, Monitor};
+use texbake::{BakeOptions, Baker, CodesRef, Edge, Edges, Filter, HeightMap, Maps, Size};
+
+/// Bakes rows into a file of this kind, and compares it with the maps of the same heights in memory.
+fn assert_streams(baker: &Baker, folder: &Folder, kind: Kind, container: &str, map: &HeightMap, edges: Edges) {
+    let parallax = kind.normal().is_none().then(|| kind.parallax());
+    let scale = scale("7/2");
+    let options =
+        BakeOptions { scale, filter: Filter::Scharr, edges, normal: kind.normal(), parallax, ..Default::default() };
+    let levels = Baker::reference().bake_levels(map, &options).unwrap();
+    let normal = levels.normal.iter().flatten().map(|level| level.codes());
+    let codes: Vec<CodesRef<'_>> = normal.chain(levels.parallax.iter().flatten().map(|level| level.codes())).collect();
+    let size = (map.size().width(), map.size().height());
+    let [expected, streamed] = ["expected", "streamed"].map(|name| folder.path(&format!("{name}.{container}")));
+    for mips in [false, true] {
+        write_at_once(kind.create(&expected, size, mips).unwrap(), &codes[..if mips { codes.len() } else { 1 }]);
+        let open = || Ok(Box::new(MemorySource::new(map.clone())) as HeightRows);
+        let create = |_: Size| {
+            let file = kind.create(&streamed, size, mips)?;
+            let none = Maps::<MapOut>::default();
+            Ok(if parallax.is_some() {
+                Maps { parallax: Some(file), ..none }
+            } else {
+                Maps { normal: Some(file), ..none }
+            })
+        };
+        baker.bake_rows(&open, &create, &options, &Monitor::default()).unwrap();
+        let [expected, streamed] = [&expected, &streamed].map(|path| std::fs::read(path).unwrap());
+        assert!(streamed == expected, "{} in {container}, {edges}, mips {mips}", kind.name());
+    }
+}
+
+/// Three bands of the reference, the last of which is short, as are the last blocks; the CPU has one.
+#[test]
+fn every_kind_and_edge() {
+    let (folder, mut random) = (Folder::new(), Random::new(76));
+    let maps = [
+        map_u8(13, 139, |_, _| random.bits() as u8),
+        map_u16(13, 139, |_, _| random.bits() as u16),
+        map_f32(13, 139, |_, _| random.below(1000) as f32 / 999.0),
+    ];
+    let mut maps = maps.iter().cycle();
+    for kind in KINDS {
+        for container in CONTAINERS {
+            for edges in every_edges() {
+                let map = maps.next().unwrap();
+                for baker in [Baker::reference(), Baker::cpu()] {
+                    assert_streams(&baker, &folder, kind, container, map, edges);
+                }
+            }
+        }
+    }
+}
+
+/// Maps of several bands and strips, on all threads.
+#[test]
+fn many_bands() {
+    let (folder, mut random) = (Folder::new(), Random::new(77));
+    let map = map_u16(1030, 601, |x, y| (40 * x + 70 * y) as u16 ^ (random.bits() as u16 & 1023));
+    // Texels of four codes, BC4, BC5 and BC7.
+    for (at, kind) in [2, 18, 22, 25].into_iter().enumerate() {
+        let edges = Edges { x: Edge::Clamp, y: [Edge::Wrap, Edge::Mirror][at % 2] };
+        assert_streams(&Baker::cpu(), &folder, KINDS[kind], CONTAINERS[at % 2], &map, edges);
+    }
+}
