@@ -10,7 +10,7 @@ use crate::map::{CodesMut, Edge, HeightMap, HeightType, Maps, NormalMap, Paralla
 use crate::mips::{Bake, MapSinks};
 use crate::ops::bake::{BakeOptions, BakePlan, NormalOptions, ParallaxOptions};
 use crate::stream::{
-    BandReader, CodeWriter, HeightRows, MapBands, MapOut, Monitor, RowOrder, RowSource, RowsOut, read_map_watched,
+    BandReader, CodeWriter, HeightRows, MapBands, MapOut, Monitor, RowOrder, RowSource, read_map_watched,
 };
 
 /// How a bake ran.
@@ -116,18 +116,18 @@ impl Baker {
     }
 
     /// Bakes rows from `open` into rows of a normal map for `create` while they are read and written: as
-    /// [`Baker::bake_rows`] with this one map, of one level.
+    /// [`Baker::bake_rows`] with this one map.
     ///
     /// # Errors
     /// As [`Baker::bake_rows`].
     pub fn normal_rows(
         &self,
         open: &dyn Fn() -> Result<HeightRows>,
-        create: &dyn Fn(Size) -> Result<RowsOut>,
+        create: &dyn Fn(Size) -> Result<MapOut>,
         options: &NormalOptions,
         monitor: &Monitor,
     ) -> Result<Baked> {
-        let create = |size| Ok(Maps { normal: Some(create(size)?.into()), ..Maps::default() });
+        let create = |size| Ok(Maps { normal: Some(create(size)?), ..Maps::default() });
         self.bake_rows(open, &create, &(*options).into(), monitor)
     }
 

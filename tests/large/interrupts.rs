@@ -73,7 +73,7 @@ fn a_strip_that_wraps_into_an_exr_is_unpacked_no_further_after_a_stop() {
             let rows = open_heights(&input, &ReadOptions::default())?.rows;
             Ok(Box::new(Stopping { rows, monitor: monitor.clone(), row, skipped: skipped.clone() }) as HeightRows)
         };
-        let create = |size| create_normals(&output, size, format);
+        let create = |size| Ok(create_normals(&output, size, format)?.into());
         let options = NormalOptions { format, ..NormalOptions::default() };
         let ran = Baker::cpu().normal_rows(&open, &create, &options, &monitor);
         assert!(matches!(ran, Err(Error::Cancelled)), "{ran:?}");

@@ -5,7 +5,7 @@ use crate::support::{
 };
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
-use texbake::stream::{Monitor, RowSink, RowSource};
+use texbake::stream::{MapOut, Monitor, RowSink, RowSource};
 use texbake::{
     Baker, Channels, CodesRef, Edge, Edges, Error, HeightMap, HeightType, Heights, HeightsMut, NormalFormat,
     NormalOptions, Result, Size,
@@ -159,7 +159,7 @@ impl<'a> Stream<'a> {
             let row_bytes = size.width() * format.channels.count() * format.depth.bytes();
             let Self { capacity, first_row_last, .. } = *self;
             let sink = MemorySink { taken: taken.clone(), capacity, row_bytes, first_row_last };
-            Ok(Box::new(sink) as Box<dyn RowSink>)
+            Ok((Box::new(sink) as Box<dyn RowSink>).into())
         };
         let ran = baker.normal_rows(&open, &create, &self.options, &self.monitor);
         let taken = std::mem::take(&mut *taken.lock().expect("no panic"));
@@ -329,7 +329,7 @@ fn a_height_that_is_not_finite_reaches_no_backend() {
             let create = |_: Size| {
                 let sink =
                     MemorySink { taken: taken.clone(), capacity: usize::MAX, row_bytes: 3 * width, first_row_last };
-                Ok(Box::new(sink) as Box<dyn RowSink>)
+                Ok((Box::new(sink) as Box<dyn RowSink>).into())
             };
             let options = NormalOptions { edges: Edges::both(edge), ..options("1", UNORM8) };
             let ran = Baker::cpu().normal_rows(&open, &create, &options, &Monitor::default());
@@ -390,7 +390,7 @@ fn a_map_that_is_held_is_read_no_further_after_a_stop() {
     let create = |_: Size| {
         let sink =
             MemorySink { taken: taken.clone(), capacity: usize::MAX, row_bytes: 3 * 2048, first_row_last: false };
-        Ok(Box::new(sink) as Box<dyn RowSink>)
+        Ok((Box::new(sink) as Box<dyn RowSink>).into())
     };
     let ran = Baker::cpu().normal_rows(&open, &create, &options("1", UNORM8), &monitor);
     assert!(matches!(ran, Err(Error::Cancelled)), "{ran:?}");
@@ -403,7 +403,7 @@ fn a_map_that_is_held_is_read_no_further_after_a_stop() {
 fn refused_options_open_no_sink() {
     let map = map_u8(4, 4, |_, _| 0);
     for Subject { name, baker } in every_baker() {
-        let create = |_: Size| -> Result<Box<dyn RowSink>> { panic!("{name}: a sink for a bake that cannot be") };
+        let create = |_: Size| -> Result<MapOut> { panic!("{name}: a sink for a bake that cannot be") };
         let open = || Ok(Box::new(MemorySource::new(map.clone())) as Box<dyn RowSource>);
         let ran = baker.normal_rows(&open, &create, &options("1e9", UNORM8), &Monitor::default());
         assert!(matches!(ran, Err(Error::Parameter { parameter: "scale", .. })), "{name}: {ran:?}");
