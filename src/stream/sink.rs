@@ -23,8 +23,8 @@ pub(crate) trait CodeSink: Send {
 pub struct MapOut {
     /// The rows of its largest level.
     pub rows: RowsOut,
-    /// Those of the smaller ones, while the largest is written; `None` if the file has one level. It is complete only
-    /// with all of them.
+    /// Those of the smaller ones, while the largest is written; `None` if the file is to have the largest alone. It is
+    /// complete only with all of them.
     pub levels: Option<Box<dyn LevelSink>>,
 }
 

@@ -30,7 +30,7 @@ fn angle(a: Vector, b: Vector) -> f64 {
     length(cross).atan2(dot).to_degrees()
 }
 
-/// A smooth wave of slopes up to a twelfth of the scale; noise; bricks of the examples: 8-bit normal maps.
+/// A smooth wave of slopes up to a nineteenth of the scale; noise; bricks of the examples: 8-bit normal maps.
 fn maps() -> Vec<(&'static str, NormalMap)> {
     let wave = |scale_text: &str| {
         let sine = |at: usize, frequency: f64| (at as f64 * frequency).sin();
@@ -111,11 +111,12 @@ fn mean_and_greatest(angles: &[f64]) -> [f64; 2] {
 #[test]
 fn blocks_cost_these_angles() {
     let folder = Folder::new();
+    // Mean and greatest angle of BC5, of BC7, in degrees.
     let measured = [
-        ("gentle", [0.0, 0.0], [0.0, 0.0]),
-        ("steep", [0.0, 0.0], [0.0, 0.0]),
-        ("noise", [0.0, 0.0], [0.0, 0.0]),
-        ("bricks", [0.0, 0.0], [0.0, 0.0]),
+        ("gentle", [0.0806, 1.1838], [0.2199, 1.0460]),
+        ("steep", [1.4379, 24.9920], [1.1174, 6.9133]),
+        ("noise", [8.1871, 31.5867], [9.4193, 32.4401]),
+        ("bricks", [1.1171, 23.2392], [1.3624, 15.3592]),
     ];
     for ((name, map), (expected_name, bc5, bc7)) in maps().into_iter().zip(measured) {
         assert_eq!(name, expected_name);

@@ -226,7 +226,7 @@ impl Made {
 /// Writes all rows of each level, the largest first.
 pub fn write_at_once(file: MapOut, levels: &[CodesRef<'_>]) {
     let MapOut { mut rows, levels: smaller } = file;
-    assert_eq!(smaller.is_some(), levels.len() > 1);
+    assert!(smaller.is_some() || levels.len() == 1);
     rows.write(0, levels[0]).unwrap();
     if let Some(mut smaller) = smaller {
         (1..levels.len()).for_each(|level| smaller.write(level, 0, levels[level]).unwrap());

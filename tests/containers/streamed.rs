@@ -4,8 +4,11 @@ use super::made::{CONTAINERS, KINDS, Kind, write_at_once};
 use crate::io::support::Folder;
 use crate::stream::MemorySource;
 use crate::support::{Random, every_edges, map_f32, map_u8, map_u16, scale};
+use texbake::io::{WriteOptions, create_normals_with, create_roughness_with};
 use texbake::stream::{HeightRows, MapOut, Monitor};
-use texbake::{BakeOptions, Baker, CodesRef, Edge, Edges, Filter, HeightMap, Maps, Size};
+use texbake::{
+    BakeOptions, Baker, CodesRef, Edge, Edges, Filter, HeightMap, Maps, NormalFormat, RoughnessOptions, Size,
+};
 
 /// Bakes rows into a file of this kind, and compares it with the maps of the same heights in memory.
 fn assert_streams(baker: &Baker, folder: &Folder, kind: Kind, container: &str, map: &HeightMap, edges: Edges) {
@@ -56,6 +59,28 @@ fn every_kind_and_edge() {
             }
         }
     }
+}
+
+/// A single texel has all mip levels, and loses nothing: its roughness is the base, 255/2 rounded.
+#[test]
+fn a_single_texel() {
+    let folder = Folder::new();
+    let [normal, rough] = ["n.dds", "r.dds"].map(|name| folder.path(name));
+    let base = "0.5".parse().unwrap();
+    let roughness = RoughnessOptions { base, ..Default::default() };
+    let options = BakeOptions { roughness: Some(roughness), ..Default::default() };
+    let write = WriteOptions { mips: true, ..Default::default() };
+    let create = |size: Size| {
+        let normal = Some(create_normals_with(&normal, size, NormalFormat::default(), &write)?);
+        let roughness = Some(create_roughness_with(&rough, size, roughness.format, &write)?);
+        Ok(Maps { normal, parallax: None, roughness })
+    };
+    let open = || Ok(Box::new(MemorySource::new(map_u8(1, 1, |_, _| 99))) as HeightRows);
+    Baker::cpu().bake_rows(&open, &create, &options, &Monitor::default()).unwrap();
+    assert_eq!(
+        [normal, rough].map(|path| std::fs::read(path).unwrap()[148..].to_vec()),
+        [vec![128, 128, 255, 255], vec![128],]
+    );
 }
 
 /// Maps of several bands and strips, on all threads.

@@ -87,7 +87,7 @@ pub(in crate::io) fn create(
     let smaller = levels[1..].iter().map(|level| (expected(level), rows(level))).collect();
     let rows_left = Arc::new(AtomicUsize::new(levels[1..].iter().map(|level| level.height).sum()));
     let smaller = SmallerLevels { levels: smaller, rows_left: rows_left.clone() };
-    let smaller = (levels.len() > 1).then(|| Box::new(smaller) as Box<dyn LevelSink>);
+    let smaller = options.mips.then(|| Box::new(smaller) as Box<dyn LevelSink>);
     let held_bytes = held_bytes(&format, &levels);
     Ok((FileSink::boxed(TextureEncoder { largest, rows_left, held_bytes }, replacement, size, codes), smaller))
 }
