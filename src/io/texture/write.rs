@@ -62,14 +62,17 @@ pub(in crate::io) fn check(path: &Path, format: TexelFormat, blocks: Option<Bloc
     TextureFormat::of(path, format, blocks).map(drop)
 }
 
-/// Creates a KTX2 or DDS file of one level, or of all with what takes the smaller ones.
+/// What takes the largest level, and what takes the others.
+type FileAndLevels = (Box<FileSink>, Option<Box<dyn LevelSink>>);
+
+/// Creates a KTX2 or DDS file of one level or of all.
 pub(in crate::io) fn create(
     path: &Path,
     container: Container,
     size: Size,
     codes: TexelFormat,
     options: &WriteOptions,
-) -> Result<(Box<FileSink>, Option<Box<dyn LevelSink>>)> {
+) -> Result<FileAndLevels> {
     let format = TextureFormat::of(path, codes, options.blocks)?;
     let mut levels = levels(size, options.mips, &format);
     let header = match container {
