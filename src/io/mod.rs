@@ -23,6 +23,7 @@ mod gltf;
 mod groups;
 #[cfg(feature = "cli")]
 mod halo;
+mod in_order;
 mod input;
 mod limits;
 mod normal;

@@ -20,6 +20,7 @@ mod raster;
 mod raw;
 mod replace;
 mod samples;
+mod shared_threads;
 mod shrink;
 pub mod support;
 mod tiff;

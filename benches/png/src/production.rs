@@ -33,7 +33,7 @@ pub fn encode(image: &Image, compression: Compression, pool: &rayon::ThreadPool)
         let mut stripe = Stripe::default();
         stripe.begin(rows, row, image.bpp, above);
         stripes[number].chunks_exact(row).for_each(|samples| stripe.next_row().copy_from_slice(samples));
-        stripe.encode(compression);
+        let stripe = stripe.encoded(compression);
         // The checksum of the chunk that would hold the stripe.
         std::hint::black_box(crc32fast::hash(stripe.deflated()));
         stripe.deflated().len()

@@ -1,41 +1,54 @@
 //! EXR normal and parallax maps, written: scan lines in ZIP blocks, which is lossless.
 
 use crate::error::{Error, Result};
+use crate::io::in_order::InOrder;
 use crate::io::replace::{Output, Replacement};
 use crate::io::sink::{FileSink, RowEncoder, cannot_hold};
 use crate::map::{CodesRef, Depth, Size, TexelFormat};
-use exr::block::chunk::Chunk;
 use exr::block::{BlockIndex, UncompressedBlock};
 use exr::compression::Compression;
 use exr::math::Vec2;
 use exr::meta::attribute::{ChannelDescription, LineOrder, SampleType, Text};
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, Headers};
-use rayon::prelude::*;
 use std::io::{Cursor, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-/// Blocks of 16 lines.
-const COMPRESSION: Compression = Compression::ZIP16;
+/// The most bytes of a block of 16 lines. Wider maps have blocks of one, since several are on their way at a time.
+const BLOCK_BYTES: usize = 8 << 20;
 
-/// Gathers rows into blocks, which are compressed side by side.
+/// Gathers rows into blocks, which several threads compress.
 struct ExrEncoder {
     path: PathBuf,
     output: Output,
-    size: Size,
-    headers: Headers,
-    /// For each channel of the file, in its alphabetical order, its place in a texel of codes.
-    order: &'static [usize],
-    sample_bytes: usize,
-    /// Codes of the rows that do not fill a block yet, as bytes.
-    pending: Vec<u8>,
-    /// Rows that were written.
-    rows_done: usize,
+    layout: Arc<BlockLayout>,
+    /// The rows that do not fill a block yet, and the blocks on their way: what the file holds of each.
+    lines: Lines,
+    compressing: InOrder<Lines, exr::error::Result<Vec<u8>>>,
     /// Bytes that were written.
     position: u64,
     /// Where the table of block offsets stands, and the offsets so far.
     table: u64,
     offsets: Vec<u64>,
+}
+
+/// How rows of codes become blocks of the file.
+struct BlockLayout {
+    headers: Headers,
+    width: usize,
+    /// For each channel of the file, in its alphabetical order, its place in a texel of codes.
+    order: &'static [usize],
+    sample_bytes: usize,
+    /// Rows of a block; the last one may have fewer.
+    lines: usize,
+}
+
+/// Rows of a block, from row `top` on, as bytes of their codes.
+#[derive(Default)]
+struct Lines {
+    top: usize,
+    codes: Vec<u8>,
 }
 
 /// Creates an EXR with the channels R, G and B, or R and G, or Y alone, of half or float samples.
@@ -47,9 +60,11 @@ pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box
         2 => ("normals", &["G", "R"], &[1, 0]),
         _ => ("normals", &["B", "G", "R"], &[2, 1, 0]),
     };
+    let row_bytes = size.width() * format.channels * format.depth.bytes();
+    let compression = if row_bytes > BLOCK_BYTES / 16 { Compression::ZIP1 } else { Compression::ZIP16 };
     let channels = names.iter().map(|name| ChannelDescription::new(*name, sample_type, true)).collect();
     let header = Header::new(Text::from(layer), (size.width(), size.height()), channels).with_encoding(
-        COMPRESSION,
+        compression,
         BlockDescription::ScanLines,
         LineOrder::Increasing,
     );
@@ -60,18 +75,20 @@ pub(crate) fn create(path: &Path, size: Size, format: TexelFormat) -> Result<Box
     let first_bytes = header_bytes(path, &headers)?;
     output.write_all(&first_bytes).map_err(Error::io(path))?;
     let position = first_bytes.len() as u64;
+    let table = position - 8 * headers[0].chunk_count as u64;
+    let lines = compression.scan_lines_per_block();
+    let layout = BlockLayout { headers, width: size.width(), order, sample_bytes: format.depth.bytes(), lines };
+    let layout = Arc::new(layout);
+    let blocks = layout.clone();
     let encoder = ExrEncoder {
         path: path.into(),
         output,
-        size,
-        order,
-        sample_bytes: format.depth.bytes(),
-        pending: Vec::new(),
-        rows_done: 0,
+        lines: Lines::default(),
+        compressing: InOrder::new(layout.block_bytes(), move |lines| blocks.compress(lines)),
+        layout,
         position,
-        table: position - 8 * headers[0].chunk_count as u64,
+        table,
         offsets: Vec::new(),
-        headers,
     };
     Ok(FileSink::boxed(encoder, replacement, size, format))
 }
@@ -104,32 +121,18 @@ fn header_bytes(path: &Path, headers: &Headers) -> Result<Vec<u8>> {
     }
 }
 
-impl ExrEncoder {
+impl BlockLayout {
     fn row_bytes(&self) -> usize {
-        self.size.width() * self.order.len() * self.sample_bytes
+        self.width * self.order.len() * self.sample_bytes
     }
 
-    /// Compresses and writes the first `rows` pending rows: whole blocks, or the last rows of the map.
-    fn write_blocks(&mut self, rows: usize) -> Result<()> {
-        let (row_bytes, lines) = (self.row_bytes(), COMPRESSION.scan_lines_per_block());
-        let (first, this) = (self.rows_done, &*self);
-        let blocks = this.pending[..rows * row_bytes].par_chunks(lines * row_bytes).enumerate();
-        let chunks: Result<Vec<Chunk>> =
-            blocks.map(|(block, codes)| this.compress(first + block * lines, codes)).collect();
-        let mut bytes = Vec::new();
-        for chunk in chunks? {
-            self.offsets.push(self.position + bytes.len() as u64);
-            chunk.write(&mut bytes, 1).map_err(|error| failed(&self.path, error))?;
-        }
-        self.output.write_all(&bytes).map_err(Error::io(&self.path))?;
-        self.position += bytes.len() as u64;
-        self.pending.drain(..rows * row_bytes);
-        self.rows_done += rows;
-        Ok(())
+    fn block_bytes(&self) -> usize {
+        self.lines * self.row_bytes()
     }
 
-    /// A block of rows from `top`: line by line, channel after channel.
-    fn compress(&self, top: usize, codes: &[u8]) -> Result<Chunk> {
+    /// What the file holds of a block: line by line, channel after channel, deflated.
+    fn compress(&self, lines: Lines) -> exr::error::Result<Vec<u8>> {
+        let Lines { top, codes } = lines;
         let (sample, texel) = (self.sample_bytes, self.sample_bytes * self.order.len());
         let mut data = Vec::with_capacity(codes.len());
         for row in codes.chunks_exact(self.row_bytes()) {
@@ -141,17 +144,41 @@ impl ExrEncoder {
             layer: 0,
             level: Vec2(0, 0),
             pixel_position: Vec2(0, top),
-            pixel_size: Vec2(self.size.width(), codes.len() / self.row_bytes()),
+            pixel_size: Vec2(self.width, codes.len() / self.row_bytes()),
         };
-        let block = UncompressedBlock { index, data };
-        block.compress_to_chunk(&self.headers).map_err(|error| failed(&self.path, error))
+        drop(codes);
+        let mut chunk = Vec::new();
+        UncompressedBlock { index, data }.compress_to_chunk(&self.headers)?.write(&mut chunk, 1)?;
+        Ok(chunk)
+    }
+}
+
+impl ExrEncoder {
+    /// Lets some thread compress the rows of a block, and goes on with the next one.
+    fn send_block(&mut self) -> Result<()> {
+        let top = self.lines.top + self.lines.codes.len() / self.layout.row_bytes();
+        let codes = Vec::with_capacity(self.layout.block_bytes());
+        self.compressing.push(std::mem::replace(&mut self.lines, Lines { top, codes }));
+        while let Some(chunk) = self.compressing.pop_surplus() {
+            self.write_chunk(chunk)?;
+        }
+        Ok(())
+    }
+
+    fn write_chunk(&mut self, chunk: exr::error::Result<Vec<u8>>) -> Result<()> {
+        let chunk = chunk.map_err(|error| failed(&self.path, error))?;
+        self.output.write_all(&chunk).map_err(Error::io(&self.path))?;
+        self.offsets.push(self.position);
+        self.position += chunk.len() as u64;
+        Ok(())
     }
 }
 
 impl RowEncoder for ExrEncoder {
-    /// Whole blocks of rows: as they came, channel by channel, deflated, and in the file's order.
-    fn held_bytes(&self, rows: usize) -> u64 {
-        (4 * (rows + COMPRESSION.scan_lines_per_block()) * self.row_bytes()) as u64
+    /// Blocks, the one that is gathered and those on their way: as they came, or channel by channel, in the order that
+    /// is deflated, and deflated.
+    fn held_bytes(&self, _: usize) -> u64 {
+        ((4 * (self.compressing.most() + 1) + 1) * self.layout.block_bytes()) as u64
     }
 
     /// Blocks of several rows are compressed one after the other.
@@ -160,14 +187,22 @@ impl RowEncoder for ExrEncoder {
     }
 
     fn write(&mut self, _: usize, rows: CodesRef<'_>) -> Result<()> {
-        self.pending.extend_from_slice(rows.bytes());
-        let (rows, lines) = (self.pending.len() / self.row_bytes(), COMPRESSION.scan_lines_per_block());
-        self.write_blocks(rows / lines * lines)
+        for row in rows.bytes().chunks_exact(self.layout.row_bytes()) {
+            self.lines.codes.extend_from_slice(row);
+            if self.lines.codes.len() == self.layout.block_bytes() {
+                self.send_block()?;
+            }
+        }
+        Ok(())
     }
 
     fn finish(mut self: Box<Self>) -> Result<()> {
-        let rows = self.pending.len() / self.row_bytes();
-        self.write_blocks(rows)?;
+        if !self.lines.codes.is_empty() {
+            self.send_block()?;
+        }
+        while let Some(chunk) = self.compressing.pop() {
+            self.write_chunk(chunk)?;
+        }
         let table: Vec<u8> = self.offsets.iter().flat_map(|offset| offset.to_le_bytes()).collect();
         let seek = self.output.seek(SeekFrom::Start(self.table));
         seek.and_then(|_| self.output.write_all(&table)).map_err(Error::io(&self.path))

@@ -2,7 +2,6 @@
 
 mod deflate;
 mod filter;
-mod in_order;
 mod inflate;
 mod read;
 mod rows;

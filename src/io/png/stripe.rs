@@ -96,22 +96,32 @@ impl Stripe {
 
     /// Filters and deflates the rows: `Fast` by one filter, and codes; `Balanced` by several, and matches where a sample
     /// says that they pay; `Small` with matches after every filter too.
-    pub fn encode(&mut self, compression: Compression) {
+    pub fn encoded(mut self, compression: Compression) -> Self {
         self.choice = None;
-        if compression == Compression::Fast {
-            self.filter(CHOICES[0]);
-            // The rows have served: the result takes their room.
-            self.other.exchange(&mut self.rows);
-            return self.attempt(CHOICES[0], LITERALS[0]);
+        match compression {
+            Compression::Fast => self.encode_once(),
+            Compression::Balanced => self.encode_well(),
+            Compression::Small => {
+                self.encode_well();
+                self.attempts(&CHOICES, &[MOST_MATCHES]);
+            }
         }
+        self
+    }
+
+    fn encode_once(&mut self) {
+        self.filter(CHOICES[0]);
+        // The rows have served: the result takes their room.
+        self.other.exchange(&mut self.rows);
+        self.attempt(CHOICES[0], LITERALS[0]);
+    }
+
+    fn encode_well(&mut self) {
         self.attempts(&CHOICES, &LITERALS);
         let smallest = self.choice.unwrap_or(CHOICES[0]);
         self.filter(smallest);
         if self.matches_pay() {
             self.attempt(smallest, MATCHES);
-        }
-        if compression == Compression::Small {
-            self.attempts(&CHOICES, &[MOST_MATCHES]);
         }
     }
 

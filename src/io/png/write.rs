@@ -8,11 +8,11 @@
 //! The other rows are cut into stripes of a fixed height, which several threads filter and deflate. The bytes depend on
 //! neither the threads nor the number of rows that come at once.
 
-use super::in_order::InOrder;
 use super::stripe::Stripe;
 use super::zlib::{self, adler_of_both};
 use crate::error::{Error, Result};
 use crate::io::Compression;
+use crate::io::in_order::InOrder;
 use crate::io::replace::{Output, Replacement};
 use crate::io::sink::{FileSink, RowEncoder, cannot_hold};
 use crate::map::{CodesRef, Depth, Encoding, Size, TexelFormat};
@@ -30,9 +30,6 @@ const NONE: u8 = 0;
 /// Chunks are cut here: PNG's may have 2^31 - 1 bytes (PNG specification, section 5.3).
 const CHUNK_MOST: usize = 1 << 30;
 
-/// Bytes of rows that may wait to be deflated or written, beside one stripe.
-const WAITING_BYTES: usize = 16 << 20;
-
 /// Filters and deflates rows on several threads.
 struct PngEncoder {
     path: PathBuf,
@@ -46,7 +43,7 @@ struct PngEncoder {
     first_row: Vec<u8>,
     /// The stripe that is being filled; those on their way; one that was written.
     stripe: Stripe,
-    encoding: InOrder<Stripe>,
+    encoding: InOrder<Stripe, Stripe>,
     free: Option<Stripe>,
     /// Of all stripes written so far: the Adler-32 of what was deflated, and its bytes.
     checksum: u32,
@@ -92,7 +89,7 @@ pub(crate) fn create(path: &Path, size: Size, format: TexelFormat, compression: 
         stripe_rows,
         first_row: Vec::new(),
         stripe,
-        encoding: InOrder::new(move |stripe: &mut Stripe| stripe.encode(compression)),
+        encoding: InOrder::new(stripe_rows * (1 + row_bytes), move |stripe: Stripe| stripe.encoded(compression)),
         free: None,
         checksum: 1, // of no bytes
         bytes: 0,
@@ -126,8 +123,8 @@ fn bit_depth(path: &Path, format: TexelFormat) -> Result<BitDepth> {
 impl RowEncoder for PngEncoder {
     /// The first row, the one above a stripe, and stripes: the one that is filled and those on their way.
     fn held_bytes(&self, _: usize) -> u64 {
-        let stripes = (self.most_waiting() + 1) * self.compression.buffers();
-        (3 * self.layout.row_bytes + stripes * (self.stripe_bytes() + self.layout.row_bytes)) as u64
+        let stripes = (self.encoding.most() + 1) * self.compression.buffers();
+        (3 * self.layout.row_bytes + stripes * (self.stripe_rows + 1) * (1 + self.layout.row_bytes)) as u64
     }
 
     fn takes_first_row_last(&self) -> bool {
@@ -151,8 +148,7 @@ impl RowEncoder for PngEncoder {
 
     fn finish(mut self: Box<Self>) -> Result<()> {
         // Meanwhile other threads have the stripes before it; a small map needs none.
-        let mut last = std::mem::take(&mut self.stripe);
-        last.encode(self.compression);
+        let last = std::mem::take(&mut self.stripe).encoded(self.compression);
         while let Some(stripe) = self.encoding.pop() {
             self.write_stripe(stripe)?;
         }
@@ -170,22 +166,11 @@ impl RowEncoder for PngEncoder {
 }
 
 impl PngEncoder {
-    fn stripe_bytes(&self) -> usize {
-        self.stripe_rows * (1 + self.layout.row_bytes)
-    }
-
-    /// Stripes that may be on their way while another is filled: each thread has one.
-    fn most_waiting(&self) -> usize {
-        (WAITING_BYTES / self.stripe_bytes().max(1)).clamp(1, rayon::current_num_threads())
-    }
-
     /// Lets some thread encode the stripe, and goes on with the next one.
     fn send_stripe(&mut self) -> Result<()> {
         let above = self.stripe.last_row().to_vec();
         self.encoding.push(std::mem::take(&mut self.stripe));
-        while self.encoding.len() > self.most_waiting()
-            && let Some(stripe) = self.encoding.pop()
-        {
+        while let Some(stripe) = self.encoding.pop_surplus() {
             self.write_stripe(stripe)?;
         }
         self.stripe = self.free.take().unwrap_or_default();

@@ -15,9 +15,9 @@
 //! Signed blocks are the unsigned ones of the codes + 128: the order of codes and the steps between them are the same,
 //! and the two ends move back.
 
+use crate::io::in_order::InOrder;
 use block_compression::encode::compress_rgba8;
 use block_compression::{BC7Settings, CompressionVariant};
-use rayon::prelude::*;
 
 /// How blocks are made from texels of 8-bit codes.
 #[derive(Debug, Clone, Copy)]
@@ -41,8 +41,10 @@ pub struct BlockRow {
     rows_left: usize,
 }
 
-/// Blocks that one task compresses.
-const TASK: usize = 64;
+const RGBA_BYTES: usize = 4;
+
+/// Bytes of a row of texels that one thread compresses at a time: those of 64 blocks.
+const PIECE: usize = 64 * Blocks::SIDE * RGBA_BYTES;
 
 impl Blocks {
     /// Texels along each side of a block.
@@ -59,26 +61,36 @@ impl Blocks {
         Self { flip: 0x80, ..self }
     }
 
-    /// The blocks of a row whose texels have come.
-    pub fn compress(&self, row: BlockRow) -> Vec<u8> {
+    /// The blocks of a row whose texels have come; several threads make them.
+    pub fn compress(self, row: BlockRow) -> Vec<u8> {
         let BlockRow { mut texels, rows, .. } = row;
         let stride = texels.len() / Self::SIDE;
         // Rows beyond the border repeat its last one.
         for beyond in rows..Self::SIDE {
             texels.copy_within((rows - 1) * stride..rows * stride, beyond * stride);
         }
-        let texel_bytes = 4;
-        let block_stride = Self::SIDE * texel_bytes;
-        let blocks = stride / block_stride;
-        let mut bytes = vec![0; self.variant.blocks_byte_size((blocks * Self::SIDE) as u32, Self::SIDE as u32)];
-        let block_bytes = bytes.len() / blocks;
-        let tasks = bytes.par_chunks_mut(TASK * block_bytes).enumerate();
-        tasks.for_each(|(task, bytes)| {
-            let (first, width) = (task * TASK * block_stride, bytes.len() / block_bytes * Self::SIDE);
-            compress_rgba8(self.variant, &texels[first..], bytes, width as u32, Self::SIDE as u32, stride as u32);
-            // The two ends of each component's range.
-            bytes.chunks_exact_mut(8).for_each(|component| component[..2].iter_mut().for_each(|end| *end ^= self.flip));
-        });
+        let mut bytes = Vec::new();
+        let mut pieces = InOrder::new(PIECE * Self::SIDE, move |piece: Vec<u8>| self.compress_piece(&piece));
+        for first in (0..stride).step_by(PIECE) {
+            let piece = first..(first + PIECE).min(stride);
+            let rows: Vec<&[u8]> = texels.chunks_exact(stride).map(|row| &row[piece.clone()]).collect();
+            pieces.push(rows.concat());
+            pieces.pop_surplus().into_iter().for_each(|blocks| bytes.extend(blocks));
+        }
+        while let Some(blocks) = pieces.pop() {
+            bytes.extend(blocks);
+        }
+        bytes
+    }
+
+    /// The blocks of four rows of texels.
+    fn compress_piece(self, texels: &[u8]) -> Vec<u8> {
+        let stride = texels.len() / Self::SIDE;
+        let (width, height) = ((stride / RGBA_BYTES) as u32, Self::SIDE as u32);
+        let mut bytes = vec![0; self.variant.blocks_byte_size(width, height)];
+        compress_rgba8(self.variant, texels, &mut bytes, width, height, stride as u32);
+        // The two ends of each component's range.
+        bytes.chunks_exact_mut(8).for_each(|component| component[..2].iter_mut().for_each(|end| *end ^= self.flip));
         bytes
     }
 

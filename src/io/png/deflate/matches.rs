@@ -17,5 +17,7 @@ pub(super) fn deflate(data: &[u8], level: u32, out: &mut BitWriter) {
         }
         deflated.reserve(1024);
     }
+    // What was not taken would be missing from a file that looks whole.
+    assert_eq!(zlib.total_in(), data.len() as u64, "zlib takes all that it is given");
     out.whole(&deflated);
 }
