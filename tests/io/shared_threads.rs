@@ -20,7 +20,7 @@ fn bake(input: &Path, path: &Path, format: NormalFormat, write: &WriteOptions) -
 fn all_shared_threads_bake_at_once() {
     let folder = Folder::new();
     let (input, size) = (folder.path("heights.bmp"), [300, 200]);
-    let heights: Vec<u8> = (0..size[0] * size[1]).map(|texel| (texel * texel >> 7) as u8).collect();
+    let heights: Vec<u8> = (0..size[0] * size[1]).map(|texel| ((texel * texel) >> 7) as u8).collect();
     image::save_buffer(&input, &heights, 300, 200, image::ExtendedColorType::L8).unwrap();
     let bytes = NormalFormat::default();
     let halves = NormalFormat { encoding: Encoding::Float, depth: Depth::Float16, ..bytes };

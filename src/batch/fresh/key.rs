@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt::Display;
 
-/// Options by their names on the command line, with their values as it takes them: the words of a report decide over
-/// nothing. What belongs to a map or a file that the job does not have is not there.
+/// Options by their names on the command line, with their values in its words: those of the report decide over nothing.
+/// What belongs to a map or a file that the job does not have is not there.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(super) struct Key(pub BTreeMap<String, String>);
@@ -40,7 +40,7 @@ impl Key {
             None => {
                 key.set("filter", filter);
                 key.set("edge", edges);
-                key.set_option("normals", None::<&str>);
+                key.set("normals", NONE);
             }
         }
         key.set_neighbours(neighbours.as_ref());

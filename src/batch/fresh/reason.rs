@@ -49,7 +49,7 @@ pub enum Reason {
     Refused(String),
 }
 
-/// An option that changed. Its values are those of the command line; `none` stands for no value.
+/// An option that changed. Its values are in the words of the command line; `none` stands for no value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Change {
     /// The option's name on the command line.
@@ -67,12 +67,11 @@ impl Change {
         let names: BTreeSet<&String> = from.keys().chain(to.keys()).collect();
         let differing = names.into_iter().map(|name| (name, from.get(name), to.get(name)));
         let differing: Vec<_> = differing.filter(|(_, from, to)| from != to).collect();
-        let in_both = differing.iter().any(|(_, from, to)| from.is_some() && to.is_some());
-        let is_told =
-            |(_, from, to): &(&String, Option<&String>, Option<&String>)| !in_both || (from.is_some() && to.is_some());
+        let is_in_both = |(_, from, to): &(_, Option<_>, Option<_>)| from.is_some() && to.is_some();
+        let is_any_in_both = differing.iter().any(is_in_both);
         let text = |value: Option<&String>| value.map_or(NONE, String::as_str).to_owned();
         let change = |(name, from, to): (&String, _, _)| Self { option: name.clone(), from: text(from), to: text(to) };
-        differing.into_iter().filter(is_told).map(change).collect()
+        differing.into_iter().filter(|it| !is_any_in_both || is_in_both(it)).map(change).collect()
     }
 }
 
