@@ -165,43 +165,39 @@ fn its_own_files_do_not_wake_it_and_each_round_is_a_line() {
     assert_eq!(watch.interrupted(), Some(130));
 }
 
-/// What a bake of `tex` with its neighbours gives, by itself.
-fn baked_apart(folder: &Folder, arguments: &[&str], name: &str) -> Vec<u8> {
-    let _ = fs::remove_dir_all(folder.path("apart"));
-    folder.run(&[&["bake", "tex", "--out", "apart", "-q"], arguments].concat()).ends(0);
-    fs::read(folder.path("apart").join(name)).unwrap()
+const TILES: [&str; 4] = ["--neighbours", "t_{x}_{y}_height.png", "--edge", "clamp"];
+
+/// The tiles of a row, by their seeds from the left.
+fn tiles(folder: &Folder, seeds: &[u8]) {
+    seeds.iter().enumerate().for_each(|(x, seed)| map(folder, &format!("tex/t_{x}_0_height.png"), *seed));
 }
 
 #[test]
 fn a_tile_that_is_saved_is_baked_with_those_beside_it() {
     let folder = Folder::new();
-    let tile = |x: usize, seed: u8| map(&folder, &format!("tex/t_{x}_0_height.png"), seed);
-    (0..4).for_each(|x| tile(x, 2 * x as u8 + 1));
-    let arguments = ["--neighbours", "t_{x}_{y}_height.png", "--edge", "clamp", "--report", "r.json"];
-    let mut watch = Watch::spawn(&folder, &[&["--out", "out"], &arguments[..]].concat());
+    tiles(&folder, &[1, 3, 5, 7]);
+    let mut watch = Watch::spawn(&folder, &[&["--out", "out"], &TILES[..]].concat());
     watch.until_said("watching for changes", 1);
-    let tiles = &arguments[..4];
-    let mut until = |saved: &dyn Fn(), stale: &[&str], unchanged: &str| {
-        let before = fs::read(folder.path("out").join(unchanged)).unwrap();
-        saved();
-        for name in stale.iter().chain([&unchanged]) {
-            watch.until_baked(&format!("out/{name}"), &baked_apart(&folder, tiles, name));
-        }
-        assert!(fs::read(folder.path("out").join(unchanged)).unwrap() == before);
-        let report = folder.path("r.json");
-        watch.until(|| {
-            let report = fs::read(&report).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
-            report.is_some_and(|report| {
-                let results = results(&report).into_iter().filter(|(_, result)| result != "fresh");
-                results.map(|(name, _)| format!("{name}_normal.png")).eq(stale.iter().map(|name| (*name).to_owned()))
-            })
-        });
+    let output = |x: usize| format!("out/t_{x}_0_normal.png");
+    let written = |x: usize| fs::metadata(folder.path(&output(x))).unwrap().modified().unwrap();
+    let first = [1, 2].map(written);
+    // Waits until these are what a clean bake of such a row gives.
+    let mut until_baked = |seeds: &[u8], stale: &[usize]| {
+        let clean = Folder::new();
+        tiles(&clean, seeds);
+        clean.run(&[&["bake", "tex", "--out", "out", "-q"], &TILES[..]].concat()).ends(0);
+        let expected = |x: &usize| fs::read(clean.path(&output(*x))).unwrap();
+        stale.iter().for_each(|x| watch.until_baked(&output(*x), &expected(x)));
     };
-    until(&|| tile(0, 21), &["t_0_0_normal.png", "t_1_0_normal.png"], "t_2_0_normal.png");
     // One appears, and goes.
-    until(&|| tile(4, 23), &["t_3_0_normal.png", "t_4_0_normal.png"], "t_1_0_normal.png");
-    let remove = || fs::remove_file(folder.path("tex/t_4_0_height.png")).unwrap();
-    until(&remove, &["t_3_0_normal.png"], "t_1_0_normal.png");
+    map(&folder, "tex/t_4_0_height.png", 23);
+    until_baked(&[1, 3, 5, 7, 23], &[3, 4]);
+    fs::remove_file(folder.path("tex/t_4_0_height.png")).unwrap();
+    until_baked(&[1, 3, 5, 7], &[3]);
+    assert_eq!([1, 2].map(written), first, "they lie further away");
+    map(&folder, "tex/t_0_0_height.png", 21);
+    until_baked(&[21, 3, 5, 7], &[0, 1]);
+    assert_eq!(written(2), first[1]);
     assert_eq!(watch.interrupted(), Some(130));
 }
 
