@@ -233,6 +233,11 @@ impl fmt::Display for Neighbours {
 }
 
 impl Neighbours {
+    /// Which they are.
+    pub(super) fn halo(&self) -> &Halo {
+        &self.0
+    }
+
     /// The edge modes for which they were found.
     pub(super) fn edges(&self) -> Edges {
         self.0.edges

@@ -384,8 +384,8 @@ impl FileReport {
 }
 
 impl Options {
-    pub(super) fn new(job: &Job, iterations: NonZeroU32) -> Self {
-        // All fields by name, so that none can be forgotten: what stands here decides what is baked again.
+    fn new(job: &Job, iterations: NonZeroU32) -> Self {
+        // All fields by name, so that none can be forgotten.
         let BakeOptions { scale, filter, edges, normal, parallax, roughness, precision } = job.options;
         let ReadOptions { channel, color_space, raw, shrink, max_bytes } = &job.read;
         let WriteOptions { compression, mips, blocks } = job.write;

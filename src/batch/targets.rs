@@ -1,6 +1,7 @@
 //! No output may overwrite an input, nor another output; nor may the report.
 
 use crate::error::{Error, Result};
+use crate::io::file_state::Identity;
 use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
 
@@ -44,7 +45,7 @@ pub(super) fn refusals(jobs: &[Files<'_>]) -> Vec<Option<Refusal>> {
     let refused = |file: &Path, reason, remedy| Some(Refusal { file: file.into(), reason, remedy });
     let refusal = |job: &Files, output: &Path, place: &PathBuf| {
         let name = job.inputs[0].display();
-        if let Some(input) = identity(place).and_then(|output| inputs.get(&output)) {
+        if let Some(input) = Identity::at(place).and_then(|output| inputs.get(&output)) {
             return refused(input, format!("the output of {name} would overwrite this input"), REMEDY);
         }
         let there = &of_place[place.as_path()];
@@ -70,7 +71,7 @@ pub(super) fn check_report(what: &str, path: &Path, jobs: &[Files<'_>], settings
         Err(Error::file(path, reason, format!("choose another name for the {what}")))
     };
     let place_of_report = place(path);
-    if let Some(input) = identity(&place_of_report).and_then(|report| inputs(jobs).remove(&report)) {
+    if let Some(input) = Identity::at(&place_of_report).and_then(|report| inputs(jobs).remove(&report)) {
         return refused("input", input);
     }
     if let Some(settings) = settings.filter(|settings| place(settings) == place_of_report) {
@@ -83,7 +84,7 @@ pub(super) fn check_report(what: &str, path: &Path, jobs: &[Files<'_>], settings
 }
 
 fn inputs<'a>(jobs: &[Files<'a>]) -> HashMap<Identity, &'a Path> {
-    jobs.iter().flat_map(|job| &job.inputs).filter_map(|input| Some((identity(input)?, *input))).collect()
+    jobs.iter().flat_map(|job| &job.inputs).filter_map(|input| Some((Identity::at(input)?, *input))).collect()
 }
 
 /// Where a file is written: links are resolved as far as there is something, the rest is as the file system compares
@@ -105,25 +106,4 @@ fn append(folder: PathBuf, below: &Path) -> PathBuf {
         }
         path
     })
-}
-
-/// What is the same for all names of one file, hard links included.
-#[cfg(unix)]
-type Identity = (u64, u64);
-
-/// `None` if there is no such file.
-#[cfg(unix)]
-fn identity(path: &Path) -> Option<Identity> {
-    use std::os::unix::fs::MetadataExt;
-    std::fs::metadata(path).ok().map(|file| (file.dev(), file.ino()))
-}
-
-/// What is the same for all names of one file but hard links.
-#[cfg(not(unix))]
-type Identity = PathBuf;
-
-/// `None` if there is no such file.
-#[cfg(not(unix))]
-fn identity(path: &Path) -> Option<Identity> {
-    path.canonicalize().ok()
 }

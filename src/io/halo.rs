@@ -1,6 +1,6 @@
 //! A tile of a larger map with the texels around it: one more row above and below, one more column on either side.
 
-use super::input::Found;
+use super::input::Watch;
 use super::samples::{Samples, copy, len, part, part_mut};
 use super::{ReadOptions, open_heights};
 use crate::error::{Error, Result};
@@ -53,7 +53,7 @@ pub(crate) struct HaloRows {
     read: ReadOptions,
     halo: Halo,
     /// The tiles around it, as they were found.
-    around: Vec<Found>,
+    around: Vec<Watch>,
     /// Ends the way to a row of a tile above.
     stop: Stop,
     size: Size,
@@ -104,7 +104,7 @@ impl HaloRows {
     /// As [`open_heights`]; [`Error::File`] if another tile has another size or type, or shares too much with this one.
     pub fn new(path: &Path, rows: HeightRows, halo: Halo, read: &ReadOptions, stop: Stop) -> Result<Self> {
         let (inner, height_type) = (rows.size(), rows.height_type());
-        let around = halo.tiles().into_iter().map(Found::at).collect::<Result<_>>()?;
+        let around = halo.tiles().into_iter().map(Watch::at).collect::<Result<_>>()?;
         for tile in halo.tiles() {
             check_alike(path, (inner, height_type), tile, &open_heights(tile, read)?.rows)?;
         }
@@ -222,7 +222,7 @@ impl RowSource for HaloRows {
             }
             self.next_row += 1;
         }
-        if self.next_row > last { self.around.iter().try_for_each(Found::check) } else { Ok(()) }
+        if self.next_row > last { self.around.iter().try_for_each(Watch::check) } else { Ok(()) }
     }
 
     /// Its first and last rows are there already: what lies beyond them is never asked for.

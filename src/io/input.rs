@@ -1,12 +1,12 @@
 //! Files that are read: what may be one, and whether it stayed as it was.
 
+use super::file_state::FileState;
 use super::samples::{Layout, Opened, SampleRows, len};
 use crate::error::{Error, Result};
 use crate::map::HeightsMut;
-use std::fs::{self, File, Metadata};
+use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
 
 /// Opens a file. Pipes are refused, since files are read more than once: their format is found out first, and a map
 /// that wraps may be read twice.
@@ -44,49 +44,39 @@ pub(super) fn read(path: &Path, limit: u64) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A file as it was found.
-pub(super) struct Found {
+/// Watches over a file that must stay as it was found.
+pub(super) struct Watch {
     path: PathBuf,
-    state: State,
+    state: FileState,
 }
 
-/// What is another one in another file, and in the same file after it was written to.
-#[derive(PartialEq, Eq)]
-struct State {
-    length: u64,
-    modified: Option<SystemTime>,
-    /// The file system, and the file's number in it.
-    #[cfg(unix)]
-    place: (u64, u64),
-}
-
-impl Found {
+impl Watch {
     /// Looks at a file before it is opened.
     ///
     /// # Errors
     /// [`Error::Io`] if there is none.
     pub fn at(path: &Path) -> Result<Self> {
-        let state = State::of(&fs::metadata(path).map_err(Error::io(path))?);
+        let state = FileState::at(path).map_err(Error::io(path))?;
         Ok(Self { path: path.into(), state })
     }
 
     /// Its bytes.
     pub fn length(&self) -> u64 {
-        self.state.length
+        self.state.length()
     }
 
     /// Fails unless the same file is there, and nobody has written to it.
     pub fn check(&self) -> Result<()> {
-        if fs::metadata(&self.path).is_ok_and(|now| State::of(&now) == self.state) {
+        if FileState::at(&self.path).is_ok_and(|now| now.is_unwritten_since(&self.state)) {
             return Ok(());
         }
         Err(Error::file(&self.path, "it changed or went while it was read", "run again once it is complete"))
     }
 
     /// The file once it was opened, whose last row is given only if it stayed as it was.
-    pub fn watch(self, opened: Result<Opened>) -> Result<Opened> {
+    pub fn over(self, opened: Result<Opened>) -> Result<Opened> {
         let opened = self.explain(opened)?;
-        let samples = Box::new(Watched { found: self, rows: opened.samples, next_row: 0 });
+        let samples = Box::new(Watched { watch: self, rows: opened.samples, next_row: 0 });
         Ok(Opened { samples, ..opened })
     }
 
@@ -96,22 +86,9 @@ impl Found {
     }
 }
 
-impl State {
-    fn of(file: &Metadata) -> Self {
-        #[cfg(unix)]
-        use std::os::unix::fs::MetadataExt;
-        Self {
-            length: file.len(),
-            modified: file.modified().ok(),
-            #[cfg(unix)]
-            place: (file.dev(), file.ino()),
-        }
-    }
-}
-
 /// Rows of a file that must not change before the last one is read.
 struct Watched {
-    found: Found,
+    watch: Watch,
     rows: Box<dyn SampleRows>,
     next_row: usize,
 }
@@ -124,13 +101,13 @@ impl SampleRows for Watched {
     fn read(&mut self, rows: HeightsMut<'_>) -> Result<()> {
         let Layout { size, .. } = self.layout();
         let end = self.next_row + len(&rows) / self.layout().per_row();
-        self.found.explain(self.rows.read(rows))?;
+        self.watch.explain(self.rows.read(rows))?;
         self.next_row = end;
-        if end == size.height() { self.found.check() } else { Ok(()) }
+        if end == size.height() { self.watch.check() } else { Ok(()) }
     }
 
     fn seek(&mut self, row: usize) -> Result<()> {
-        self.found.explain(self.rows.seek(row))?;
+        self.watch.explain(self.rows.seek(row))?;
         self.next_row = row;
         Ok(())
     }

@@ -17,6 +17,7 @@ mod channel;
 mod crop;
 mod damage;
 mod exr;
+pub(crate) mod file_state;
 mod format;
 mod gltf;
 mod groups;
@@ -67,7 +68,7 @@ use crate::map::{Channels, Convention, Encoding, HeightMap, NormalMap, ParallaxM
 use crate::stream::{NormalSource, RowSource, read_map, read_normals};
 use channel::HeightRows;
 use format::FileFormat;
-use input::Found;
+use input::Watch;
 use normal::NormalRows;
 use samples::Opened;
 use shrink::Shrunk;
@@ -176,12 +177,12 @@ impl Default for NormalReadOptions {
 /// for a [`ReadOptions::shrink`] that does not fit the map; [`crate::Error::Io`]. Damage further down, channels that differ, [`crate::Error::NotFinite`] heights and a file that changed since are
 /// reported by the row reader.
 pub fn open_heights(path: &Path, options: &ReadOptions) -> Result<HeightFile> {
-    let found = Found::at(path)?;
+    let watch = Watch::at(path)?;
     let opened = match options.raw {
         Some(layout) => raw::open(path, layout),
         None => open_samples(path, exr::Wanted::Heights(options.channel.as_ref()), options.max_bytes),
     };
-    let opened = found.watch(opened)?;
+    let opened = watch.over(opened)?;
     let (rows, warnings) = HeightRows::new(path, opened, options)?;
     let rows: Box<dyn RowSource> = match options.shrink {
         NonZeroU32::MIN => Box::new(rows),
@@ -220,8 +221,8 @@ pub fn open_heights(path: &Path, options: &ReadOptions) -> Result<HeightFile> {
 /// [`crate::Error::Parameter`] if the file's samples cannot have the encoding; [`crate::Error::File`] if its channels
 /// are none of a normal map's; else as [`open_heights`].
 pub fn open_normals(path: &Path, options: &NormalReadOptions) -> Result<NormalFile> {
-    let found = Found::at(path)?;
-    let opened = found.watch(open_samples(path, exr::Wanted::Normals(options.channels), options.max_bytes))?;
+    let watch = Watch::at(path)?;
+    let opened = watch.over(open_samples(path, exr::Wanted::Normals(options.channels), options.max_bytes))?;
     let srgb = opened.says_srgb.then(|| normal::SRGB_WARNING.into());
     let (rows, warnings) = NormalRows::new(path, opened, options)?;
     Ok(NormalFile { rows: Box::new(rows), warnings, srgb })

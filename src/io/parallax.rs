@@ -1,7 +1,7 @@
 //! Parallax maps in: one signed component for each texel.
 
 use super::channel::HeightRows;
-use super::input::Found;
+use super::input::Watch;
 use super::normal::one_of;
 use super::samples::Opened;
 use super::{MAX_BYTES, ReadOptions, exr, limits, open_samples};
@@ -55,8 +55,8 @@ impl ParallaxMap {
 }
 
 fn read(path: &Path, options: &ParallaxReadOptions) -> Result<(ParallaxMap, Vec<String>)> {
-    let found = Found::at(path)?;
-    let opened = found.watch(open_samples(path, exr::Wanted::Heights(None), options.max_bytes))?;
+    let watch = Watch::at(path)?;
+    let opened = watch.over(open_samples(path, exr::Wanted::Heights(None), options.max_bytes))?;
     let encoding = encoding(path, &opened, options.encoding)?;
     let is_signed = opened.signed;
     let (mut rows, warnings) = HeightRows::new(path, opened, &ReadOptions::default())?;

@@ -81,7 +81,8 @@ fn a_device_counts_where_it_decides_over_bytes() {
     let bake = |precision, backend| baked(&folder, &["--precision", precision, "--backend", backend]).len();
     assert_eq!([bake("exact", "cpu"), bake("exact", "reference"), bake("exact", "cpu")], [3, 0, 0]);
     assert_eq!([bake("fast", "cpu"), bake("fast", "cpu"), bake("fast", "reference")], [3, 0, 3]);
-    assert_eq!(bake("fast", "cpu"), 3);
+    let found = baked(&folder, &["--precision", "fast", "--backend", "cpu"]);
+    assert!(found.len() == 3 && found.iter().all(|it| it.contains(" device ") && it.ends_with(" -> cpu")), "{found:?}");
     for threads in ["1", "2"] {
         let fast = ["--precision", "fast", "--backend", "cpu", "--threads", threads];
         assert_eq!(baked(&folder, &fast), [""; 0], "a byte depends on no number of threads");
@@ -104,6 +105,19 @@ fn another_version_of_the_kernels_bakes_all_again() {
     let why = format!("texbake bakes other bytes since (kernel version {} -> {this})", this + 1);
     assert_eq!(baked(&folder, &[]), [format!("a {why}"), format!("b {why}")]);
     assert_eq!(baked(&folder, &[]), [""; 0]);
+}
+
+#[test]
+fn an_option_of_which_a_line_says_nothing_is_told() {
+    let folder = textures();
+    assert_eq!(baked(&folder, &[]).len(), 3);
+    change_lines(&folder, |line| drop(line["options"].as_object_mut().unwrap().remove("shrink")));
+    assert_eq!(baked(&folder, &[]), ["a", "b", "c"].map(|name| format!("{name} shrink none -> 1")));
+    change_lines(&folder, |line| line["options"]["sides"] = "6".into());
+    assert_eq!(baked(&folder, &[]), ["a", "b", "c"].map(|name| format!("{name} sides 6 -> none")));
+    // Beside another change it goes without saying.
+    change_lines(&folder, |line| line["options"]["sides"] = "6".into());
+    assert_eq!(baked(&folder, &["--scale", "2"]), ["a", "b", "c"].map(|name| format!("{name} scale 1 -> 2")));
 }
 
 #[test]

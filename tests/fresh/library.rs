@@ -6,7 +6,7 @@ use std::sync::Arc;
 use texbake::batch::{Event, FileResult, FreshPlan, Freshness, Job, NormalInput, Reason};
 use texbake::io::{NormalReadOptions, ReadOptions, WriteOptions};
 use texbake::stream::Monitor;
-use texbake::{BakeOptions, Baker, Channels, Maps, ParallaxFormat};
+use texbake::{BakeOptions, Baker, Channels, Edge, Edges, Filter, Maps, ParallaxFormat};
 
 fn reasons(jobs: &[Job], out: &std::path::Path) -> Vec<Freshness> {
     FreshPlan::new(jobs, out, false, &Monitor::default()).files().collect()
@@ -43,6 +43,12 @@ fn a_given_normal_map_is_an_input() {
     let xy = [job(NormalReadOptions { channels: Some(Channels::Xy), ..Default::default() })];
     let text: Vec<String> = reasons(&xy, &out).iter().map(ToString::to_string).collect();
     assert_eq!(text, ["normals found found gl -> found xy gl"]);
+    // Slopes of the heights are not looked at.
+    let options = BakeOptions { filter: Filter::Sobel, edges: Edges::both(Edge::Clamp), ..usual[0].options };
+    assert_eq!(reasons(&[Job { options, ..usual[0].clone() }], &out), [Freshness::Fresh]);
+    let own = [Job { normals: None, ..usual[0].clone() }];
+    let text: Vec<String> = reasons(&own, &out).iter().map(ToString::to_string).collect();
+    assert_eq!(text, ["normals found found gl -> none"]);
 }
 
 #[test]

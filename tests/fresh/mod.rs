@@ -5,9 +5,9 @@ mod concurrent;
 mod decisions;
 mod dry_run;
 mod kernel_version;
-mod levels;
 mod library;
 mod many;
+mod neighbours;
 mod options;
 mod record;
 #[cfg(unix)]

@@ -49,7 +49,12 @@ pub fn record(folder: &Folder) -> PathBuf {
 
 /// The lines of the record after its header.
 pub fn lines(folder: &Folder) -> Vec<Value> {
-    let text = std::fs::read_to_string(record(folder)).unwrap();
+    lines_of(folder, "out")
+}
+
+/// The same of the record in another folder.
+pub fn lines_of(folder: &Folder, out: &str) -> Vec<Value> {
+    let text = std::fs::read_to_string(folder.path(out).join(RECORD)).unwrap();
     text.lines().skip(1).map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
@@ -64,11 +69,25 @@ pub fn change_lines(folder: &Folder, mut change: impl FnMut(&mut Value)) {
     std::fs::write(record(folder), changed).unwrap();
 }
 
+/// Bakes `input` into `out`: why each texture was baked, by its name.
+#[track_caller]
+pub fn stale(folder: &Folder, input: &str, out: &str, arguments: &str) -> BTreeMap<String, String> {
+    let arguments: Vec<&str> = arguments.split_whitespace().collect();
+    folder.run(&[&["bake", input, "--out", out, "--report", "r.json", "-q"], &arguments[..]].concat()).ends(0);
+    let results = results(&folder.json("r.json")).into_iter().filter(|(_, result)| result != "fresh");
+    results.map(|(name, result)| (name, result.strip_prefix("baked: ").unwrap_or(&result).to_owned())).collect()
+}
+
 /// The bytes of each output.
 pub fn contents(folder: &Folder) -> BTreeMap<String, Vec<u8>> {
+    contents_of(folder, "out")
+}
+
+/// The bytes of each file in a folder.
+pub fn contents_of(folder: &Folder, out: &str) -> BTreeMap<String, Vec<u8>> {
     let read = |name: String| {
-        let bytes = std::fs::read(folder.path("out").join(&name)).unwrap();
+        let bytes = std::fs::read(folder.path(out).join(&name)).unwrap();
         (name, bytes)
     };
-    folder.files("out").into_iter().map(read).collect()
+    folder.files(out).into_iter().map(read).collect()
 }

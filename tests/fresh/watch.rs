@@ -165,6 +165,42 @@ fn its_own_files_do_not_wake_it_and_each_round_is_a_line() {
     assert_eq!(watch.interrupted(), Some(130));
 }
 
+const TILES: [&str; 4] = ["--neighbours", "t_{x}_{y}_height.png", "--edge", "clamp"];
+
+/// The tiles of a row, by their seeds from the left.
+fn tiles(folder: &Folder, seeds: &[u8]) {
+    seeds.iter().enumerate().for_each(|(x, seed)| map(folder, &format!("tex/t_{x}_0_height.png"), *seed));
+}
+
+#[test]
+fn a_tile_that_is_saved_is_baked_with_those_beside_it() {
+    let folder = Folder::new();
+    tiles(&folder, &[1, 3, 5, 7]);
+    let mut watch = Watch::spawn(&folder, &[&["--out", "out"], &TILES[..]].concat());
+    watch.until_said("watching for changes", 1);
+    let output = |x: usize| format!("out/t_{x}_0_normal.png");
+    let written = |x: usize| fs::metadata(folder.path(&output(x))).unwrap().modified().unwrap();
+    let first = [1, 2].map(written);
+    // Waits until these are what a clean bake of such a row gives.
+    let mut until_baked = |seeds: &[u8], stale: &[usize]| {
+        let clean = Folder::new();
+        tiles(&clean, seeds);
+        clean.run(&[&["bake", "tex", "--out", "out", "-q"], &TILES[..]].concat()).ends(0);
+        let expected = |x: &usize| fs::read(clean.path(&output(*x))).unwrap();
+        stale.iter().for_each(|x| watch.until_baked(&output(*x), &expected(x)));
+    };
+    // One appears, and goes.
+    map(&folder, "tex/t_4_0_height.png", 23);
+    until_baked(&[1, 3, 5, 7, 23], &[3, 4]);
+    fs::remove_file(folder.path("tex/t_4_0_height.png")).unwrap();
+    until_baked(&[1, 3, 5, 7], &[3]);
+    assert_eq!([1, 2].map(written), first, "they lie further away");
+    map(&folder, "tex/t_0_0_height.png", 21);
+    until_baked(&[21, 3, 5, 7], &[0, 1]);
+    assert_eq!(written(2), first[1]);
+    assert_eq!(watch.interrupted(), Some(130));
+}
+
 #[test]
 fn wrong_arguments_and_settings_end_it_at_once() {
     let folder = Folder::new();

@@ -2,22 +2,22 @@
 
 use super::KERNEL_VERSION;
 use super::content::Content;
-use super::key;
+use super::key::Key;
 use super::line::{Line, Output};
 use super::plan::Decision;
+use super::reader::Reader;
 use super::reason::{Change, Reason};
 use super::record::Record;
 use crate::batch::{Files, Job};
-use crate::stream::Monitor;
 use std::io::{self, ErrorKind};
 use std::path::Path;
 use std::sync::Arc;
 
 /// That the outputs of `job` are what it would bake, or why not; what needs no file to be read comes first.
-pub(super) fn check(job: &Job, record: &Record, monitor: &Monitor) -> Result<Decision, Reason> {
+pub(super) fn check(job: &Job, record: &Record, reader: Reader<'_>) -> Result<Decision, Reason> {
     let Files { inputs, outputs } = job.files();
     let lines = outputs.iter().map(|output| find(record, output)).collect::<Result<Vec<_>, _>>()?;
-    let options = key::of(job, None);
+    let options = Key::of(job, None);
     for line in &lines {
         if line.kernel != KERNEL_VERSION {
             return Err(Reason::Kernel { from: line.kernel, to: KERNEL_VERSION });
@@ -35,7 +35,7 @@ pub(super) fn check(job: &Job, record: &Record, monitor: &Monitor) -> Result<Dec
         return Err(Reason::OtherInputs);
     }
     let same = |then: &Content, path: &Path, changed: fn(std::path::PathBuf) -> Reason| {
-        let now = then.still_in(path, monitor).map_err(|error| unread(path, &error))?;
+        let now = reader.still(then, path).map_err(|error| unread(path, &error))?;
         now.ok_or_else(|| changed(path.into()))
     };
     let inputs = line.inputs.iter().zip(inputs).map(|(then, input)| same(then, input, Reason::Input));

@@ -1,11 +1,11 @@
 //! What is in a file.
 
-use super::state::{FileState, Look};
+use crate::io::file_state::FileState;
 use crate::stream::Monitor;
 use serde::{Deserialize, Serialize};
-use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
+use std::time::{Duration, SystemTime};
 
 /// The content of a file, and what may spare reading it again.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -14,8 +14,19 @@ pub(super) struct Content {
     pub hash: String,
     /// The state in which it has them for sure; `None`: it was read too soon after a write to tell.
     #[serde(skip_serializing_if = "Option::is_none")]
-    state: Option<FileState>,
+    pub state: Option<FileState>,
 }
+
+/// A file's state at some moment.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Look {
+    pub state: FileState,
+    /// Whether any later write would give another state.
+    pub is_settled: bool,
+}
+
+/// The coarsest clock of a file system: FAT's. A file that was written in the same tick as before has the same times.
+const TICK: Duration = Duration::from_secs(2);
 
 /// Bytes that are read between two looks for an interrupt.
 const PIECE: usize = 1 << 20;
@@ -26,43 +37,34 @@ impl Content {
         Self { hash, state: None }
     }
 
-    /// Reads the file that was found as `look` says; `None` if it changed since.
-    ///
-    /// # Errors
-    /// What the system says; [`ErrorKind::Interrupted`] if `monitor` says so.
-    pub fn read(path: &Path, look: &Look, monitor: &Monitor) -> io::Result<Option<Self>> {
-        if !std::fs::metadata(path)?.is_file() {
-            return Err(io::Error::other("it is no file"));
-        }
-        let hash = hash(&mut File::open(path)?, monitor)?;
-        let is_same = Look::at(path)?.state == look.state;
-        Ok(is_same.then(|| Self { hash, state: look.settled() }))
-    }
-
     /// Whether the file that was found as `look` says has this content for sure.
     pub fn is_known_by(&self, look: &Look) -> bool {
-        self.state.is_some() && self.state == look.state
+        self.state == Some(look.state)
     }
+}
 
-    /// This content with the state in which the file at `path` has it; `None` if it has another one. The file is read
-    /// only if its state is another one.
+impl Look {
+    /// Looks at a file.
     ///
     /// # Errors
-    /// As [`Content::read`].
-    pub fn still_in(&self, path: &Path, monitor: &Monitor) -> io::Result<Option<Self>> {
-        let look = Look::at(path)?;
-        if self.is_known_by(&look) {
-            return Ok(Some(self.clone()));
-        }
-        let now = Self::read(path, &look, monitor)?;
-        Ok(now.filter(|now| now.hash == self.hash))
+    /// If there is none.
+    pub fn at(path: &Path) -> io::Result<Self> {
+        let tick_ago = SystemTime::now() - TICK;
+        let state = FileState::at(path)?;
+        Ok(Self { state, is_settled: state.is_from_before(tick_ago) })
+    }
+
+    /// The state, if it is enough to know the file again.
+    pub fn settled(&self) -> Option<FileState> {
+        self.is_settled.then_some(self.state)
     }
 }
 
 /// BLAKE3 of the bytes to come, in hexadecimal digits.
 ///
 /// # Errors
-/// As [`Content::read`]; what is shorter than a MiB is read to its end, interrupted or not.
+/// What the system says; [`ErrorKind::Interrupted`] if `monitor` says so, but what is shorter than a MiB is read to its
+/// end.
 pub(super) fn hash(bytes: &mut dyn Read, monitor: &Monitor) -> io::Result<String> {
     let mut hasher = blake3::Hasher::new();
     let mut piece = vec![0; PIECE];
@@ -76,5 +78,22 @@ pub(super) fn hash(bytes: &mut dyn Read, monitor: &Monitor) -> io::Result<String
         if hasher.count() >= PIECE as u64 && monitor.is_cancelled() {
             return Err(ErrorKind::Interrupted.into());
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::UNIX_EPOCH;
+
+    #[test]
+    fn only_files_that_were_left_alone_for_a_tick_are_settled() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        assert!(!Look::at(file.path()).unwrap().is_settled, "just made");
+        // Whatever its time of writing says: another program may set that, and not the time of the change.
+        file.as_file().set_modified(UNIX_EPOCH + Duration::from_secs(1)).unwrap();
+        assert_eq!(Look::at(file.path()).unwrap().is_settled, cfg!(not(unix)));
+        file.as_file().set_modified(SystemTime::now() + Duration::from_secs(3600)).unwrap();
+        assert!(!Look::at(file.path()).unwrap().is_settled, "from the future");
     }
 }

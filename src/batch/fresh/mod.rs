@@ -14,10 +14,10 @@ mod kernel_version;
 mod key;
 mod line;
 mod plan;
+mod reader;
 mod reason;
 mod record;
 mod run;
-mod state;
 mod written;
 
 pub use kernel_version::KERNEL_VERSION;

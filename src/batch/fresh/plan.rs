@@ -1,11 +1,11 @@
 //! Which of many files are to be baked, and why.
 
 use super::check::check;
-use super::content::Content;
+use super::content::{Content, Look};
 use super::line::Line;
+use super::reader::{Reader, Seen};
 use super::reason::{Freshness, Reason};
 use super::record::Record;
-use super::state::Look;
 use crate::batch::targets::{self, Refusal};
 use crate::batch::{Files, Job};
 use crate::stream::Monitor;
@@ -37,6 +37,7 @@ pub struct FreshPlan<'a> {
     pub(super) jobs: &'a [Job],
     pub(super) decisions: Vec<Decision>,
     pub(super) record: Record,
+    pub(super) seen: Seen,
     warnings: Mutex<Vec<String>>,
 }
 
@@ -74,13 +75,15 @@ impl<'a> FreshPlan<'a> {
     /// then is [`Reason::Interrupted`]. Nothing is written.
     pub fn new(jobs: &'a [Job], folder: &Path, is_forced: bool, monitor: &Monitor) -> Self {
         let (record, warning) = Record::read(folder);
+        let seen = Seen::default();
+        let reader = Reader { seen: &seen, monitor };
         let decide = |(job, refusal): (&Job, Option<Refusal>)| match refusal {
             Some(refusal) => Decision::Refused(refusal),
-            None => Decision::about(job, &record, is_forced, monitor),
+            None => Decision::about(job, &record, is_forced, reader),
         };
         let refusals = targets::refusals(&Job::all_files(jobs));
         let decisions = jobs.par_iter().zip(refusals).map(decide).collect();
-        Self { jobs, decisions, record, warnings: Mutex::new(warning.into_iter().collect()) }
+        Self { jobs, decisions, record, seen, warnings: Mutex::new(warning.into_iter().collect()) }
     }
 
     /// What was decided about each job, in their order.
@@ -103,21 +106,21 @@ impl<'a> FreshPlan<'a> {
 }
 
 impl Decision {
-    fn about(job: &Job, record: &Record, is_forced: bool, monitor: &Monitor) -> Self {
+    fn about(job: &Job, record: &Record, is_forced: bool, reader: Reader<'_>) -> Self {
         let reason = match is_forced {
             true => Reason::Forced,
-            false => match check(job, record, monitor) {
+            false => match check(job, record, reader) {
                 Ok(fresh) => return fresh,
                 Err(reason) => reason,
             },
         };
-        if monitor.is_cancelled() {
+        if reader.monitor.is_cancelled() {
             return Self::Stale { reason, inputs: Vec::new() };
         }
         let Files { inputs, outputs } = job.files();
         let line = outputs.first().and_then(|output| record.line(output));
         let then = |place: usize| line.as_ref()?.inputs.get(place);
-        let inputs = inputs.iter().enumerate().map(|(place, input)| Before::of(input, then(place), monitor));
+        let inputs = inputs.iter().enumerate().map(|(place, input)| Before::of(input, then(place), reader));
         Self::Stale { reason, inputs: inputs.collect::<Option<_>>().unwrap_or_default() }
     }
 
@@ -133,25 +136,24 @@ impl Decision {
 impl Before {
     /// Looks at an input, and reads it if it was written to just now; `None` if it cannot be read. `then` is what was in
     /// it when its output was baked before.
-    fn of(input: &Path, then: Option<&Content>, monitor: &Monitor) -> Option<Self> {
+    fn of(input: &Path, then: Option<&Content>, reader: Reader<'_>) -> Option<Self> {
         let look = Look::at(input).ok()?;
         let content = match then.filter(|then| then.is_known_by(&look)) {
             Some(then) => Some(then.clone()),
-            None if look.is_settled => None,
-            None => Some(Content::read(input, &look, monitor).ok()??),
+            None if look.is_settled => reader.seen.content(input, &look),
+            None => Some(reader.content(input, &look).ok()??),
         };
         Some(Self { look, content })
     }
 
-    /// The content of an input that is as it was before the bake; `None` if it is not, or `monitor` was cancelled.
-    pub fn unchanged(&self, input: &Path, monitor: &Monitor) -> Option<Content> {
-        let now = Look::at(input).ok()?;
-        if let Some(content) = self.content.as_ref().filter(|content| content.is_known_by(&now)) {
-            return Some(content.clone());
+    /// The content of an input that is as it was before the bake; `None` if it is not, or there was an interrupt.
+    pub fn unchanged(&self, input: &Path, reader: Reader<'_>) -> Option<Content> {
+        let look = Look::at(input).ok().filter(|now| now.state == self.look.state)?;
+        match &self.content {
+            Some(content) if content.is_known_by(&look) => Some(content.clone()),
+            // A write in the same tick of the clock has left no trace in the state.
+            Some(content) => reader.content(input, &look).ok()?.filter(|now| now.hash == content.hash),
+            None => reader.content(input, &look).ok()?,
         }
-        // The state is that of before, or it is no content.
-        let now = Content::read(input, &self.look, monitor).ok()??;
-        let was_same = self.content.as_ref().is_none_or(|before| before.hash == now.hash);
-        was_same.then_some(now)
     }
 }

@@ -1,6 +1,7 @@
 //! Why a file is baked.
 
-use super::key::Key;
+use super::key::{Key, NONE};
+use std::collections::BTreeSet;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -13,7 +14,7 @@ pub enum Freshness {
     Stale(Reason),
 }
 
-/// Why a job's outputs are not what it would bake.
+/// Why a job's outputs are not what it would bake. Paths are those of the [`Job`](crate::batch::Job).
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Reason {
@@ -21,21 +22,21 @@ pub enum Reason {
     Forced,
     /// It was not baked before.
     New,
-    /// An output is there, and nothing says how it was baked.
+    /// This output is there, and nothing says how it was baked.
     Unknown(PathBuf),
-    /// An output was baked, and is not there any more.
+    /// This output was baked, and is not there any more.
     Missing(PathBuf),
-    /// An output is not what was baked.
+    /// This output is not what was baked.
     Edited(PathBuf),
-    /// An input has another content.
+    /// This input has another content: the height map, a given normal map, or a tile beside it.
     Input(PathBuf),
     /// It was baked from more or fewer files.
     OtherInputs,
-    /// An input or an output cannot be read, and why.
+    /// This input or output cannot be read, and why.
     Unreadable(PathBuf, String),
     /// Its files were not read to the end: the plan was cancelled.
     Interrupted,
-    /// It was baked by other options.
+    /// It was baked by other options: these, at least one.
     Options(Vec<Change>),
     /// Another version of texbake, which baked other bytes.
     Kernel {
@@ -48,28 +49,29 @@ pub enum Reason {
     Refused(String),
 }
 
-/// An option that changed, by its name in the report.
+/// An option that changed. Its values are in the words of the command line; `none` stands for no value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Change {
-    /// The option.
+    /// The option's name on the command line.
     pub option: String,
-    /// Its value before, if it had one.
-    pub from: Option<String>,
-    /// Its value now, if it has one.
-    pub to: Option<String>,
+    /// Its value before.
+    pub from: String,
+    /// Its value now.
+    pub to: String,
 }
 
 impl Change {
-    /// What differs between two keys.
-    pub(super) fn all(from: &Key, to: &Key) -> Vec<Self> {
-        let gone = from.keys().filter(|option| !to.contains_key(*option));
-        let differing = to.keys().filter(|option| from.get(*option) != to.get(*option));
-        let change = |option: &String| Self {
-            option: option.clone(),
-            from: from.get(option).cloned(),
-            to: to.get(option).cloned(),
-        };
-        differing.chain(gone).map(change).collect()
+    /// What differs between two keys. What only one of them has belongs to another option that changed, as the bits of a
+    /// map to the maps that are asked for; it is told if it is all that there is.
+    pub(super) fn all(Key(from): &Key, Key(to): &Key) -> Vec<Self> {
+        let names: BTreeSet<&String> = from.keys().chain(to.keys()).collect();
+        let differing = names.into_iter().map(|name| (name, from.get(name), to.get(name)));
+        let differing: Vec<_> = differing.filter(|(_, from, to)| from != to).collect();
+        let is_in_both = |(_, from, to): &(_, Option<_>, Option<_>)| from.is_some() && to.is_some();
+        let is_any_in_both = differing.iter().any(is_in_both);
+        let text = |value: Option<&String>| value.map_or(NONE, String::as_str).to_owned();
+        let change = |(name, from, to): (&String, _, _)| Self { option: name.clone(), from: text(from), to: text(to) };
+        differing.into_iter().filter(|it| !is_any_in_both || is_in_both(it)).map(change).collect()
     }
 }
 
@@ -108,8 +110,6 @@ impl fmt::Display for Reason {
 
 impl fmt::Display for Change {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = self.option.replace('_', "-");
-        let [from, to] = [&self.from, &self.to].map(|value| value.as_deref().unwrap_or("none"));
-        write!(f, "{name} {from} -> {to}")
+        write!(f, "{} {} -> {}", self.option, self.from, self.to)
     }
 }

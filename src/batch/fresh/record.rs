@@ -6,6 +6,7 @@
 
 use super::line::Line;
 use crate::error::{Error, Result};
+use crate::io::file_state::is_at;
 use crate::io::replace::Replacement;
 use std::collections::{BTreeMap, HashMap};
 use std::fs::{self, File};
@@ -253,19 +254,4 @@ fn end_of_lines(file: &mut File) -> io::Result<u64> {
     file.seek(SeekFrom::Start(0))?;
     let bytes = read_whole(file)?;
     Ok(bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last as u64 + 1))
-}
-
-/// Whether an open file is still the one of this name.
-#[cfg(unix)]
-fn is_at(file: &File, path: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    let place = |file: fs::Metadata| (file.dev(), file.ino());
-    let places = [file.metadata(), fs::metadata(path)].map(|file| file.map(place).ok());
-    places[0] == places[1]
-}
-
-/// Elsewhere an open file keeps its name.
-#[cfg(not(unix))]
-fn is_at(_: &File, _: &Path) -> bool {
-    true
 }

@@ -1,9 +1,10 @@
 //! What is stale is baked, and remembered.
 
 use super::KERNEL_VERSION;
-use super::key;
+use super::key::Key;
 use super::line::{BakedLine, Line, Output};
 use super::plan::{Decision, FreshPlan};
+use super::reader::Reader;
 use super::written::Written;
 use crate::batch::job::{Queued, run_queue};
 use crate::batch::{Event, Files, Job, Outcome};
@@ -12,8 +13,13 @@ use crate::stream::Monitor;
 use std::path::Path;
 
 impl FreshPlan<'_> {
-    /// Runs the jobs that are stale as [`run`](crate::batch::run) does. Each that is complete is remembered at once, so
-    /// that a run that is killed goes on where it stopped; the others come out as they were baked then.
+    /// Runs the jobs that are stale as [`run`](crate::batch::run) does, `at_once` of them at a time; the others come out
+    /// as they were baked then. Jobs that fail do not stop others, and nothing is remembered of them.
+    ///
+    /// Each job that is complete is remembered at once, in the record of the plan's folder. So a run that is killed, or
+    /// whose `monitor` is cancelled, goes on where it stopped; only of a job whose large inputs would still have to be
+    /// read at that moment is nothing remembered. A record that cannot be written is a warning of
+    /// [`FreshPlan::warnings`], and no job's error.
     ///
     /// `watch` is told of all jobs by their place in the list of all, first of those that are not begun.
     pub fn run(&self, at_once: usize, monitor: &Monitor, watch: &(dyn Fn(Event<'_>) + Sync)) -> Vec<Outcome> {
@@ -79,7 +85,8 @@ impl FreshPlan<'_> {
         let (Ok(baked), Decision::Stale { inputs, .. }) = (&outcome.result, &self.decisions[place]) else { return };
         let job = &self.jobs[place];
         let Files { inputs: files, outputs } = job.files();
-        let inputs = files.iter().zip(inputs).map(|(input, before)| before.unchanged(input, monitor));
+        let reader = Reader { seen: &self.seen, monitor };
+        let inputs = files.iter().zip(inputs).map(|(input, before)| before.unchanged(input, reader));
         let inputs = inputs.collect::<Option<Vec<_>>>().filter(|inputs| inputs.len() == files.len());
         let output = |path: &&Path| Some(Output { name: self.record.name(path), content: written?.content(path)? });
         let outputs = outputs.iter().map(output).collect::<Option<Vec<_>>>();
@@ -87,7 +94,7 @@ impl FreshPlan<'_> {
         let line = Line {
             outputs,
             kernel: KERNEL_VERSION,
-            options: key::of(job, Some(&baked.ran)),
+            options: Key::of(job, Some(&baked.ran)),
             inputs,
             baked: BakedLine(baked.clone()),
             warnings: outcome.warnings.clone(),

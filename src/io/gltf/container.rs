@@ -3,7 +3,7 @@
 use super::document::{Buffer, Document, ModelFile, Origin, index};
 use super::uri::{Uri, file_of};
 use crate::error::{Error, Result};
-use crate::io::input::{self, Found};
+use crate::io::input::{self, Watch};
 use crate::io::limits;
 use serde_json::Value;
 use std::path::Path;
@@ -94,11 +94,11 @@ fn check_values(path: &Path, json: &[u8], limit: u64) -> Result<()> {
 
 /// A file of at most `limit` bytes.
 pub(in crate::io) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>> {
-    let found = Found::at(path)?;
-    limits::check_model(path, found.length(), limit)?;
+    let watch = Watch::at(path)?;
+    limits::check_model(path, watch.length(), limit)?;
     let bytes = input::read(path, limit)?;
     limits::check_model(path, bytes.len() as u64, limit)?;
-    found.check()?;
+    watch.check()?;
     Ok(bytes)
 }
 
