@@ -1,8 +1,11 @@
 //! Which files are height maps.
 
+use super::place::with_real_folder;
+use super::tile_template::TileTemplate;
 use crate::error::{Error, Result};
 use crate::io::INPUT_EXTENSIONS;
 use std::collections::HashSet;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use walkdir::{DirEntry, WalkDir};
 
@@ -17,9 +20,18 @@ pub struct Found {
     pub stem: String,
     /// The resolution after the suffix, with its underscore: `_2k`. May be empty.
     pub size: String,
+    /// Whether the file itself was named, and not a folder above it.
+    pub is_named: bool,
 }
 
+/// What tiles are called of which a file is one, by its path below the folder that was searched; `None`: it is no tile.
+pub type TemplateOf<'a> = &'a dyn Fn(&Path) -> Option<TileTemplate>;
+
 impl Found {
+    fn new(path: &Path, folder: &Path, (stem, size): (&str, &str)) -> Self {
+        Self { path: path.into(), folder: folder.into(), stem: stem.into(), size: size.into(), is_named: false }
+    }
+
     /// Its path below the folder that was searched, which globs match.
     pub fn relative(&self) -> PathBuf {
         self.folder.join(self.path.file_name().unwrap_or_default())
@@ -64,29 +76,36 @@ impl Search {
     /// circles; anything else is taken as it is. What would be found twice at one place counts once. The second list
     /// says which folders could not be searched.
     pub fn find(&self, paths: &[PathBuf]) -> (Vec<Found>, Vec<Error>) {
+        self.find_with_tiles(paths, &|_| None)
+    }
+
+    /// The same, and tiles of larger maps: `template_of` says what they are called, for the path of each file below the
+    /// folder that was searched. Such a name needs no suffix, and loses none that its template has not.
+    pub fn find_with_tiles(&self, paths: &[PathBuf], template_of: TemplateOf<'_>) -> (Vec<Found>, Vec<Error>) {
         let (mut found, mut errors) = (Vec::new(), Vec::new());
         for path in paths {
             if path.is_dir() {
-                self.find_below(path, &mut found, &mut errors);
+                self.find_below(path, template_of, &mut found, &mut errors);
             } else {
-                found.push(self.named(path));
+                found.push(self.named(path, template_of));
             }
         }
         let mut seen = HashSet::new();
-        found.retain(|map| seen.insert((place(&map.path), map.folder.clone())));
+        found.retain(|map| seen.insert((with_real_folder(&map.path), map.folder.clone())));
         (found, errors)
     }
 
-    fn find_below(&self, root: &Path, found: &mut Vec<Found>, errors: &mut Vec<Error>) {
+    fn find_below(&self, root: &Path, template_of: TemplateOf<'_>, found: &mut Vec<Found>, errors: &mut Vec<Error>) {
+        let wanted = |path: &Path| self.tile(root, path, template_of).or_else(|| self.height_map(root, path));
         // What begins with a dot is some program's own: .git, macOS's ._wall_height.png.
         let is_shown = |entry: &DirEntry| entry.depth() == 0 || !entry.file_name().as_encoded_bytes().starts_with(b".");
         let entries = WalkDir::new(root).follow_links(true).sort_by_file_name().into_iter();
         for entry in entries.filter_entry(is_shown) {
             match entry {
-                Ok(entry) if entry.file_type().is_file() => found.extend(self.height_map(root, entry.path())),
+                Ok(entry) if entry.file_type().is_file() => found.extend(wanted(entry.path())),
                 Ok(_) => {}
                 Err(error) if error.loop_ancestor().is_some() => {}
-                Err(error) => match error.path().map(|path| (path.to_owned(), self.height_map(root, path))) {
+                Err(error) => match error.path().map(|path| (path.to_owned(), wanted(path))) {
                     // A link to nothing: when it is baked, the error says so.
                     Some((_, Some(map))) => found.push(map),
                     Some((path, None)) if !path.is_symlink() => errors.push(Error::io(path)(error.into())),
@@ -105,16 +124,33 @@ impl Search {
         }
         // What is no Unicode becomes replacement characters in the output's name.
         let stem = path.file_stem()?.to_string_lossy();
-        let (stem, size) = self.split(&stem)?;
-        let folder = path.parent()?.strip_prefix(root).ok()?.to_owned();
-        Some(Found { path: path.to_owned(), folder, stem: stem.to_owned(), size: size.to_owned() })
+        Some(Found::new(path, path.parent()?.strip_prefix(root).ok()?, self.split(&stem)?))
+    }
+
+    /// The file `path` below `root`, if its name says that it is a tile.
+    fn tile(&self, root: &Path, path: &Path, template_of: TemplateOf<'_>) -> Option<Found> {
+        let below = path.strip_prefix(root).ok()?;
+        let template = template_of(below).filter(|template| template.fits(path))?;
+        let stem = path.file_stem()?.to_string_lossy();
+        Some(Found::new(path, below.parent()?, self.split_tile(&template, &stem)))
     }
 
     /// A file that the user named, whatever it is called.
-    fn named(&self, path: &Path) -> Found {
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let (stem, size) = self.split(&stem).unwrap_or((&stem, ""));
-        Found { path: path.to_owned(), folder: PathBuf::new(), stem: stem.to_owned(), size: size.to_owned() }
+    fn named(&self, path: &Path, template_of: TemplateOf<'_>) -> Found {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let found = self.tile(folder, path, template_of).unwrap_or_else(|| {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            Found::new(path, Path::new(""), self.split(&stem).unwrap_or((&stem, "")))
+        });
+        Found { is_named: true, ..found }
+    }
+
+    /// What stands before the suffix and after it in the stem of a tile; its numbers are part of no suffix.
+    fn split_tile<'a>(&self, template: &TileTemplate, stem: &'a str) -> (&'a str, &'a str) {
+        let pattern = template.to_string();
+        let pattern = Path::new(&pattern).file_stem().and_then(OsStr::to_str);
+        let has_suffix = pattern.is_some_and(|pattern| self.split(pattern).is_some());
+        self.split(stem).filter(|_| has_suffix).unwrap_or((stem, ""))
     }
 
     /// What stands before the suffix and after it; `None` without a suffix.
@@ -123,12 +159,6 @@ impl Search {
         let longest = self.suffixes.iter().filter(|suffix| ends_with(rest, suffix)).map(String::len).max()?;
         Some((&rest[..rest.len() - longest], size))
     }
-}
-
-/// A path with its folders written in one way only; a link keeps its own name.
-fn place(path: &Path) -> PathBuf {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    folder.canonicalize().map_or_else(|_| path.to_owned(), |folder| folder.join(path.file_name().unwrap_or_default()))
 }
 
 /// Where `_2k` and the like begins at the end of a stem; its length if it has none.

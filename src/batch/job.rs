@@ -10,14 +10,14 @@ use super::targets::{self, Files, Refusal};
 use crate::baker::{Baked, Baker};
 use crate::error::{Error, Result};
 use crate::exact::Scale;
-use crate::io::{Cropped, ReadOptions, WriteOptions, create_codes};
+use crate::io::{Cropped, ReadOptions, SeamWarnings, WriteOptions, create_codes};
 use crate::map::{Edge, Edges, Maps, Size, TexelFormat};
 use crate::ops::bake::BakeOptions;
 use crate::stream::{HeightRows, MapOut, Monitor, RowsOut};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, OnceLock, PoisonError};
 
 /// One height map to bake.
 #[derive(Clone)]
@@ -151,6 +151,11 @@ impl Job {
         jobs.iter().map(Self::files).collect()
     }
 
+    /// Fails as the bake would if there is no input.
+    pub(super) fn check_input(&self) -> Result<()> {
+        std::fs::metadata(&self.input).map(drop).map_err(Error::io(&self.input))
+    }
+
     /// Why it failed, with the name of the file; `None` if it did not.
     pub fn failure(&self, outcome: &Outcome) -> Option<String> {
         outcome.failure(self.input.display())
@@ -181,7 +186,7 @@ impl Job {
         let options = BakeOptions { scale: self.scale()?, ..self.options };
         let baked = match &self.neighbours {
             None => self.baker.bake_rows(&open, create, &options, monitor),
-            Some(neighbours) => self.bake_tile(neighbours, &open, create, &options, monitor),
+            Some(neighbours) => self.bake_tile(neighbours, &open, create, &options, monitor, warnings),
         };
         warnings.extend(heights.warnings(baked.is_ok()));
         warnings.extend(baked.as_ref().ok().and_then(inexact_scale));
@@ -196,6 +201,7 @@ impl Job {
         create: Create<'_>,
         options: &BakeOptions,
         monitor: &Monitor,
+        warnings: &mut Vec<String>,
     ) -> Result<Baked> {
         if self.write.mips || options.roughness.is_some() {
             let range = "left out where a map has neighbours: its halo is for the largest level";
@@ -216,7 +222,8 @@ impl Job {
         let whole = Size::new(size.width() + 2, size.height() + 2)?;
         let options =
             BakeOptions { scale: options.scale.over(size, whole)?, edges: Edges::both(Edge::Clamp), ..*options };
-        let open = || Ok(Box::new(neighbours.around(&self.input, open()?, &self.read, monitor)?) as HeightRows);
+        let told = SeamWarnings::default();
+        let open = || Ok(Box::new(neighbours.around(&self.input, open()?, &self.read, monitor, &told)?) as HeightRows);
         let cropped = |(map, format): (MapOut, _)| (Box::new(Cropped::new(map.rows, size, format)) as RowsOut).into();
         let create_cropped = |_| {
             let Maps { normal, parallax, .. } = create(size)?;
@@ -225,6 +232,7 @@ impl Job {
             Ok(Maps { normal, parallax, roughness: None })
         };
         let baked = self.baker.bake_rows(&open, &create_cropped, &options, monitor)?;
+        warnings.append(&mut told.lock().unwrap_or_else(PoisonError::into_inner));
         Ok(Baked { size, ..baked })
     }
 

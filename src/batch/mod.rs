@@ -36,23 +36,27 @@ mod neighbours;
 mod normals;
 mod offsets;
 mod outcome;
+mod place;
 mod report;
 mod role;
 mod tangents;
 mod targets;
+mod tile_template;
 
 pub use blend::{BlendJob, BlendOutcome, BlendReport, FormatReport, LayerFacts, LayerReport, UsedWeights};
-pub use discovery::{Found, Search};
+pub use discovery::{Found, Search, TemplateOf};
 pub use fresh::{Change, FreshPlan, Freshness, KERNEL_VERSION, Reason};
 #[cfg(feature = "cli")]
 pub use glob::FileGlob;
 pub use job::{Event, Job, run};
 pub use mask::MaskInput;
 pub use naming::{MapKind, NameTemplate, OUTPUT_EXTENSIONS};
-pub use neighbours::{Neighbours, TileFolders, TileTemplate};
+pub use neighbours::{Neighbours, TileFolders};
 pub use normals::{Degenerate, NormalInput};
 pub use offsets::{Decoding, ParallaxNumbers, ParallaxSidecar, WelshNumbers, describe_codes};
 pub use outcome::Outcome;
+pub(crate) use place::place;
+pub use place::with_real_folder;
 pub use report::{
     FileReport, FileResult, JsonFile, Options, Outputs, Report, RunReport, SizeReport, Totals, UsedScale,
 };
@@ -61,3 +65,4 @@ pub use tangents::{
     TangentOptionsReport,
 };
 pub use targets::Files;
+pub use tile_template::TileTemplate;

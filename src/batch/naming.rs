@@ -93,7 +93,7 @@ impl NameTemplate {
             |kind| maps.contains(&kind).then(|| out.join(&found.folder).join(self.name(found, kind, extension)));
         let kinds = [MapKind::Normal, MapKind::Parallax, MapKind::Roughness];
         match kinds.map(output) {
-            [None, None, None] => Err(Error::parameter("maps", "none", "normal, parallax or both")),
+            [None, None, None] => Err(Error::parameter("maps", "none", "normal, parallax or normal,parallax")),
             [None, None, Some(_)] => Err(Error::parameter("maps", "roughness", "normal,roughness: it goes with a map")),
             [normal, parallax, _] if normal.is_some() && normal == parallax => {
                 let range = "a name with {map} in it, which keeps the normal map and the parallax map apart, \
@@ -124,7 +124,13 @@ mod tests {
     use super::*;
 
     fn outputs(template: &str, stem: &str, size: &str, maps: &[MapKind]) -> Result<Vec<String>> {
-        let map = Found { path: "x".into(), folder: "brick/old".into(), stem: stem.into(), size: size.into() };
+        let map = Found {
+            path: "x".into(),
+            folder: "brick/old".into(),
+            stem: stem.into(),
+            size: size.into(),
+            is_named: false,
+        };
         let paths = template.parse::<NameTemplate>().unwrap().outputs(&map, maps, Path::new("out"), "png")?;
         Ok(paths.iter().map(|path| path.to_str().unwrap().replace('\\', "/")).collect())
     }
@@ -151,12 +157,13 @@ mod tests {
         let error = outputs("{stem}_n", "wall", "", &[Normal, Parallax]).unwrap_err().to_string();
         assert!(error.starts_with("name is {stem}_n: it must be a name with {map} in it"), "{error}");
         let error = outputs("{stem}_n", "wall", "", &[]).unwrap_err().to_string();
-        assert_eq!(error, "maps is none: it must be normal, parallax or both");
+        assert_eq!(error, "maps is none: it must be normal, parallax or normal,parallax");
     }
 
     #[test]
     fn other_formats_are_refused() {
-        let map = Found { path: "x".into(), folder: PathBuf::new(), stem: "x".into(), size: String::new() };
+        let map =
+            Found { path: "x".into(), folder: PathBuf::new(), stem: "x".into(), size: String::new(), is_named: false };
         let error = NameTemplate::default().outputs(&map, &[Normal], Path::new("out"), "jpg").unwrap_err();
         assert_eq!(error.to_string(), "format is jpg: it must be png, tif, exr, ktx2 or dds");
     }

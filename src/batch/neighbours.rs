@@ -1,88 +1,13 @@
 //! Tiles of one large map: which files lie beside a tile.
 
+use super::tile_template::{TilePlace, TileTemplate};
 use crate::error::{Error, Result};
-use crate::io::{Halo, HaloRows, Reach, ReadOptions, TileRow};
+use crate::io::{Halo, HaloRows, Reach, ReadOptions, SeamWarnings, TileRow};
 use crate::map::{Edge, Edges};
 use crate::ops::bake::{BakeOptions, Filter};
 use crate::stream::{HeightRows, Monitor};
 use std::collections::{BTreeMap, HashMap};
-use std::fmt;
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
-
-/// The names of the tiles of a map: text with `{x}`, which counts the tiles to the right, and `{y}`, which counts them
-/// down the rows. Both are integers, which may be negative or have zeros in front.
-///
-/// ```
-/// use texbake::batch::TileTemplate;
-///
-/// let template: TileTemplate = "tiles_{x}_{y}.png".parse()?;
-/// assert_eq!(template.to_string(), "tiles_{x}_{y}.png");
-/// assert!("tiles_{x}.png".parse::<TileTemplate>().is_err());
-/// assert!("tiles_{x}{y}.png".parse::<TileTemplate>().is_err());
-/// # Ok::<(), texbake::Error>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub struct TileTemplate {
-    /// What stands before, between and behind the numbers.
-    texts: [String; 3],
-    y_first: bool,
-}
-
-/// Where a tile lies: its row of tiles from the top, its column from the left.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Place {
-    y: i64,
-    x: i64,
-}
-
-impl FromStr for TileTemplate {
-    type Err = Error;
-
-    /// # Errors
-    /// [`Error::Parameter`] unless both numbers are there once, with a text between them, and no digit follows one.
-    fn from_str(text: &str) -> Result<Self> {
-        let split = || {
-            let y_first = text.find("{y}")? < text.find("{x}")?;
-            let [first, second] = if y_first { ["{y}", "{x}"] } else { ["{x}", "{y}"] };
-            let (before, rest) = text.split_once(first)?;
-            let (between, behind) = rest.split_once(second)?;
-            let texts = [before, between, behind].map(str::to_owned);
-            let are_plain = texts.iter().all(|text| !text.contains(['{', '}', '/', '\\']));
-            let ends = |text: &str| !text.starts_with(|next: char| next.is_ascii_digit());
-            (are_plain && !between.is_empty() && ends(between) && ends(behind)).then_some(Self { texts, y_first })
-        };
-        let range = "a file name in which {x} and {y} stand for the column and the row of a tile, each once and with \
-                     something else than a digit behind it, such as tiles_{x}_{y}.png";
-        split().ok_or_else(|| Error::parameter("neighbours", text, range))
-    }
-}
-
-impl fmt::Display for TileTemplate {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [before, between, behind] = &self.texts;
-        let [first, second] = if self.y_first { ["{y}", "{x}"] } else { ["{x}", "{y}"] };
-        write!(f, "{before}{first}{between}{second}{behind}")
-    }
-}
-
-impl TileTemplate {
-    /// Where the tile of this name lies, if it is the name of one.
-    fn place(&self, name: &str) -> Option<Place> {
-        let [before, between, behind] = &self.texts;
-        let (first, rest) = number(name.strip_prefix(before.as_str())?)?;
-        let (second, rest) = number(rest.strip_prefix(between.as_str())?)?;
-        let [x, y] = if self.y_first { [second, first] } else { [first, second] };
-        (rest == behind).then_some(Place { y, x })
-    }
-}
-
-/// The integer at the beginning of a text, and the rest.
-fn number(text: &str) -> Option<(i64, &str)> {
-    let digits = text.strip_prefix('-').unwrap_or(text);
-    let end = text.len() - digits.trim_start_matches(|next: char| next.is_ascii_digit()).len();
-    Some((text[..end].parse().ok()?, &text[end..]))
-}
 
 /// The tiles of folders, each of which is listed once.
 #[derive(Debug, Default)]
@@ -91,9 +16,9 @@ pub struct TileFolders(HashMap<(PathBuf, TileTemplate), Tiles>);
 /// The tiles of a folder.
 #[derive(Debug)]
 struct Tiles {
-    files: BTreeMap<Place, PathBuf>,
+    files: BTreeMap<TilePlace, PathBuf>,
     /// The first and the last tile of each column of tiles.
-    columns: HashMap<i64, [Place; 2]>,
+    columns: HashMap<i64, [TilePlace; 2]>,
 }
 
 /// What lies around a tile, for one filter and one pair of edge modes.
@@ -104,7 +29,10 @@ struct Tiles {
 ///
 /// At a corner the tile above or below decides, or what stands for it: the texel is the one beyond that tile's side.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub struct Neighbours(Halo);
+pub struct Neighbours {
+    halo: Halo,
+    missing: Vec<PathBuf>,
+}
 
 impl TileFolders {
     /// What lies around the tile `input`, in its own folder. Tiles beside each other share `overlap` texels, which are
@@ -120,8 +48,7 @@ impl TileFolders {
         overlap: usize,
         options: &BakeOptions,
     ) -> Result<Neighbours> {
-        let name = input.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        let place = template.place(name).ok_or_else(|| {
+        let place = template.place_of(input).ok_or_else(|| {
             let reason = format!("its name is not {template} with numbers for {{x}} and {{y}}");
             Error::file(input, reason, "change --neighbours, or leave it out for this file")
         })?;
@@ -134,7 +61,10 @@ impl TileFolders {
         let sides = Sides { tiles: &self.0[&key], overlap, edges: options.edges };
         // The central stencil looks at no corner.
         let looks_at_corners = options.filter != Filter::Central;
-        Ok(Neighbours(sides.around(place, looks_at_corners)))
+        let halo = sides.around(place, looks_at_corners);
+        let name = |place| template.name(place, input.file_name()?.to_str()?);
+        let missing = sides.tiles.holes_beside(place).filter_map(name).map(|name| key.0.join(name)).collect();
+        Ok(Neighbours { halo, missing })
     }
 }
 
@@ -144,8 +74,8 @@ impl Tiles {
         let mut files = BTreeMap::new();
         for entry in std::fs::read_dir(listed).map_err(Error::io(listed))? {
             let name = entry.map_err(Error::io(listed))?.file_name();
-            let Some(place) = name.to_str().and_then(|name| template.place(name)) else { continue };
-            let path = folder.join(&name);
+            let path = folder.join(name);
+            let Some(place) = template.place_of(&path) else { continue };
             if let Some(other) = files.insert(place, path.clone()) {
                 let reason = format!("it is the same tile as {}: column {}, row {}", other.display(), place.x, place.y);
                 return Err(Error::file(path, reason, "move one of them away"));
@@ -159,17 +89,34 @@ impl Tiles {
     }
 
     /// The first and the last tile of a row of tiles.
-    fn row(&self, y: i64) -> Option<[Place; 2]> {
-        first_and_last(self.files.range(Place { y, x: i64::MIN }..=Place { y, x: i64::MAX }).map(|(place, _)| *place))
+    fn row(&self, y: i64) -> Option<[TilePlace; 2]> {
+        first_and_last(
+            self.files.range(TilePlace { y, x: i64::MIN }..=TilePlace { y, x: i64::MAX }).map(|(place, _)| *place),
+        )
     }
 
     /// The first and the last tile of a column of tiles.
-    fn column(&self, x: i64) -> Option<[Place; 2]> {
+    fn column(&self, x: i64) -> Option<[TilePlace; 2]> {
         self.columns.get(&x).copied()
+    }
+
+    /// Where there is no tile beside one, although its row or its column of tiles goes on further out.
+    fn holes_beside(&self, TilePlace { y, x }: TilePlace) -> impl Iterator<Item = TilePlace> {
+        let steps = [(-1, 0), (1, 0), (0, -1), (0, 1)];
+        let beside = steps
+            .into_iter()
+            .filter_map(move |(down, right)| Some(TilePlace { y: y.checked_add(down)?, x: x.checked_add(right)? }));
+        let is_between = |place: TilePlace, ends: Option<[TilePlace; 2]>| {
+            ends.is_some_and(|[first, last]| (first..=last).contains(&place))
+        };
+        beside.filter(move |place| {
+            let is_within = is_between(*place, self.row(place.y)) || is_between(*place, self.column(place.x));
+            is_within && !self.files.contains_key(place)
+        })
     }
 }
 
-fn first_and_last(mut places: impl DoubleEndedIterator<Item = Place>) -> Option<[Place; 2]> {
+fn first_and_last(mut places: impl DoubleEndedIterator<Item = TilePlace>) -> Option<[TilePlace; 2]> {
     let first = places.next()?;
     Some([first, places.next_back().unwrap_or(first)])
 }
@@ -182,80 +129,92 @@ struct Sides<'a> {
 }
 
 impl Sides<'_> {
-    fn around(&self, place: Place, looks_at_corners: bool) -> Halo {
+    fn around(&self, place: TilePlace, looks_at_corners: bool) -> Halo {
         let (above, up) = self.vertical(place, -1);
         let (below, down) = self.vertical(place, 1);
         let corners = |of| if looks_at_corners { self.ends(of) } else { Default::default() };
         let rows = [
             TileRow { tile: up, ends: corners(above) },
-            TileRow { tile: Reach::default(), ends: self.ends(place) },
+            TileRow { tile: Reach::Own, ends: self.ends(place) },
             TileRow { tile: down, ends: corners(below) },
         ];
         Halo { rows, edges: self.edges }
     }
 
     /// What lies one step up or down.
-    fn vertical(&self, place: Place, step: i64) -> (Place, Reach) {
-        let beside = place.y.checked_add(step).map(|y| Place { y, ..place });
+    fn vertical(&self, place: TilePlace, step: i64) -> (TilePlace, Reach) {
+        let beside = place.y.checked_add(step).map(|y| TilePlace { y, ..place });
         self.beyond(place, beside, far_side(self.tiles.column(place.x), step), self.edges.y)
     }
 
     /// What lies to the left and to the right.
-    fn ends(&self, place: Place) -> [Reach; 2] {
+    fn ends(&self, place: TilePlace) -> [Reach; 2] {
         [-1, 1].map(|step| {
-            let beside = place.x.checked_add(step).map(|x| Place { x, ..place });
+            let beside = place.x.checked_add(step).map(|x| TilePlace { x, ..place });
             self.beyond(place, beside, far_side(self.tiles.row(place.y), step), self.edges.x).1
         })
     }
 
     /// The tile beside another one; where there is none, the one at the far side of a map that wraps, or itself.
-    fn beyond(&self, place: Place, beside: Option<Place>, far: Option<Place>, edge: Edge) -> (Place, Reach) {
-        let find = |wanted: Option<Place>| self.tiles.files.get_key_value(&wanted?);
+    fn beyond(
+        &self,
+        place: TilePlace,
+        beside: Option<TilePlace>,
+        far: Option<TilePlace>,
+        edge: Edge,
+    ) -> (TilePlace, Reach) {
+        let find = |wanted: Option<TilePlace>| self.tiles.files.get_key_value(&wanted?);
         let far = far.filter(|far| edge == Edge::Wrap && *far != place);
         match (find(beside), find(far)) {
-            (Some((place, path)), _) => (*place, Reach { tile: Some(path.clone()), overlap: self.overlap }),
-            (None, Some((place, path))) => (*place, Reach { tile: Some(path.clone()), overlap: 0 }),
-            (None, None) => (place, Reach::default()),
+            (Some((place, path)), _) => (*place, Reach::Beside { tile: path.clone(), overlap: self.overlap }),
+            (None, Some((place, path))) => (*place, Reach::Far(path.clone())),
+            (None, None) => (place, Reach::Own),
         }
     }
 }
 
 /// Going backwards, the last tile is at the far side.
-fn far_side(ends: Option<[Place; 2]>, step: i64) -> Option<Place> {
+fn far_side(ends: Option<[TilePlace; 2]>, step: i64) -> Option<TilePlace> {
     ends.map(|[first, last]| if step < 0 { last } else { first })
-}
-
-impl fmt::Display for Neighbours {
-    /// The tiles around it in three rows, each from the left.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(f)
-    }
 }
 
 impl Neighbours {
     /// Which they are.
     pub(super) fn halo(&self) -> &Halo {
-        &self.0
+        &self.halo
     }
 
     /// The edge modes for which they were found.
     pub(super) fn edges(&self) -> Edges {
-        self.0.edges
+        self.halo.edges
     }
 
-    /// The rows of the tile `input` with their halo, until the monitor ends them.
+    /// What lies beyond each side and corner where it is another tile, by the names of sides.
+    pub(super) fn sides(&self) -> BTreeMap<&'static str, String> {
+        let other = self.halo.sides().into_iter().filter(|(_, reach)| reach.tile().is_some());
+        other.map(|(side, reach)| (side, reach.to_string())).collect()
+    }
+
+    /// The rows of the tile `input` with their halo, as long as the monitor lets; what looks wrong is `told` at the end.
     pub(super) fn around(
         &self,
         input: &Path,
         rows: HeightRows,
         read: &ReadOptions,
         monitor: &Monitor,
+        told: &SeamWarnings,
     ) -> Result<HaloRows> {
-        HaloRows::new(input, rows, self.0.clone(), read, monitor.stop())
+        HaloRows::new(input, rows, self.halo.clone(), read, monitor.stop(), told.clone())
     }
 
     /// The tiles that are read beside the tile itself, each once.
     pub fn files(&self) -> Vec<&Path> {
-        self.0.tiles()
+        self.halo.tiles()
+    }
+
+    /// Tiles that should be beside it and are not there, although the map goes on behind them. Its maps have the
+    /// borders of the whole map at them.
+    pub fn missing(&self) -> &[PathBuf] {
+        &self.missing
     }
 }

@@ -3,7 +3,7 @@
 use super::fresh::Freshness;
 use super::offsets::ParallaxNumbers;
 use super::targets::{self, Files};
-use super::{Job, MapKind, Outcome};
+use super::{Job, MapKind, Neighbours, Outcome};
 use crate::baker::{Baker, Ran};
 use crate::error::{Error, Result};
 use crate::io::replace::{Replacement, open_stream};
@@ -11,13 +11,14 @@ use crate::io::{ReadOptions, WriteOptions};
 use crate::map::Size;
 use crate::ops::bake::BakeOptions;
 use serde::{Serialize, Serializer};
+use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::Write;
+use std::io::{BufReader, Write};
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// A run and its files.
+/// A run and its files. The default is a run of no file.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
     /// Version of texbake.
@@ -26,8 +27,10 @@ pub struct Report {
     pub settings: Option<String>,
     /// Sums over the files.
     pub totals: Totals,
-    /// Folders that could not be searched, and why.
+    /// Why folders could not be searched, files not be baked as their settings say, or nothing be baked at all.
     pub errors: Vec<String>,
+    /// What looks wrong with more than one file: tiles that are missing.
+    pub warnings: Vec<String>,
     /// The files, in the order in which they were found.
     pub files: Vec<FileReport>,
     /// Height maps that get no map, as the settings say.
@@ -191,8 +194,8 @@ pub struct Options {
     pub roughness_bits: Option<String>,
     /// The blocks of texels, if any.
     pub block_compression: Option<String>,
-    /// The tiles around the input, if it is one of a larger map.
-    pub neighbours: Option<String>,
+    /// The tiles around the input, if it is one of a larger map, by the sides at which they lie.
+    pub neighbours: Option<BTreeMap<&'static str, String>>,
     /// The channel that was read.
     pub channel: Option<String>,
     /// What the height codes mean.
@@ -217,23 +220,36 @@ pub struct UsedScale {
 }
 
 impl Report {
-    /// What `jobs` came to in `time`, nothing left out; `errors` are those of the search, and the numbers of parallax
-    /// maps are for `iterations` steps.
+    /// What `jobs` came to in `time`, nothing left out, beside `errors`; the numbers of parallax maps are for
+    /// `iterations` steps.
     pub fn new(
         jobs: &[Job],
         outcomes: &[Outcome],
         time: Duration,
-        errors: &[Error],
+        errors: &[String],
         settings: Option<&Path>,
         iterations: NonZeroU32,
     ) -> Self {
         let file = |(job, outcome): (&Job, &Outcome)| FileReport::new(job, outcome, iterations);
         Self {
-            version: env!("CARGO_PKG_VERSION"),
             settings: settings.map(|path| path.display().to_string()),
             totals: Totals::new(outcomes, time),
-            errors: errors.iter().map(ToString::to_string).collect(),
+            errors: errors.to_vec(),
             files: jobs.iter().zip(outcomes).map(file).collect(),
+            ..Self::default()
+        }
+    }
+}
+
+impl Default for Report {
+    fn default() -> Self {
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            settings: None,
+            totals: Totals::default(),
+            errors: Vec::new(),
+            warnings: Vec::new(),
+            files: Vec::new(),
             left_out: Vec::new(),
         }
     }
@@ -269,6 +285,19 @@ impl JsonFile {
         Ok(Self { path: path.into(), place })
     }
 
+    /// Writes a report of what went wrong before it was known which files are inputs: only another report is replaced,
+    /// as it would stand for this run.
+    ///
+    /// # Errors
+    /// As [`JsonFile::create`]; [`Error::File`] for any other file.
+    pub fn replace_report(path: &Path, report: &Report) -> Result<()> {
+        let is_file = std::fs::metadata(path).is_ok_and(|there| there.is_file());
+        if is_file && !is_report(path) {
+            return Err(Error::file(path, "it is no report", "choose another name for the report"));
+        }
+        Self::create("report", path, &[], None)?.write(report)
+    }
+
     /// Writes `content` and closes the file.
     ///
     /// # Errors
@@ -284,6 +313,13 @@ impl JsonFile {
             JsonPlace::Stream(mut stream) => stream.write_all(&json).map_err(Error::io(&self.path)),
         }
     }
+}
+
+/// Whether a file is a report of files.
+fn is_report(path: &Path) -> bool {
+    let keys = ["version", "totals", "errors", "files"];
+    let content = File::open(path).ok().and_then(|file| serde_json::from_reader(BufReader::new(file)).ok());
+    content.is_some_and(|content: serde_json::Value| keys.iter().all(|key| content.get(key).is_some()))
 }
 
 impl Totals {
@@ -411,7 +447,7 @@ impl Options {
             base_roughness: roughness.map(|options| options.base.to_string()),
             roughness_bits: roughness.map(|options| options.format.depth.to_string()),
             block_compression: blocks.map(|blocks| blocks.to_string()),
-            neighbours: job.neighbours.as_ref().map(ToString::to_string),
+            neighbours: job.neighbours.as_ref().map(Neighbours::sides),
             channel: channel.as_ref().map(ToString::to_string),
             color_space: color_space.to_string(),
             raw: raw.map(|layout| layout.to_string()),

@@ -1,9 +1,10 @@
 //! No output may overwrite an input, nor another output; nor may the report.
 
+use super::place::place;
 use crate::error::{Error, Result};
 use crate::io::file_state::Identity;
 use std::collections::HashMap;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 /// The files that a job reads and writes.
 #[derive(Debug, Clone)]
@@ -85,25 +86,4 @@ pub(super) fn check_report(what: &str, path: &Path, jobs: &[Files<'_>], settings
 
 fn inputs<'a>(jobs: &[Files<'a>]) -> HashMap<Identity, &'a Path> {
     jobs.iter().flat_map(|job| &job.inputs).filter_map(|input| Some((Identity::at(input)?, *input))).collect()
-}
-
-/// Where a file is written: links are resolved as far as there is something, the rest is as the file system compares
-/// it.
-fn place(path: &Path) -> PathBuf {
-    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let resolved = |ancestor: &Path| Some((ancestor.canonicalize().ok()?, path.strip_prefix(ancestor).ok()?));
-    let place = path.ancestors().find_map(resolved).map(|(existing, rest)| append(existing, rest));
-    let place = place.unwrap_or_else(|| path.clone());
-    if cfg!(any(windows, target_os = "macos")) { place.to_string_lossy().to_lowercase().into() } else { place }
-}
-
-/// A path below a folder in which nothing of it exists yet, and so no link.
-fn append(folder: PathBuf, below: &Path) -> PathBuf {
-    below.components().fold(folder, |mut path, part| {
-        match part {
-            Component::ParentDir => _ = path.pop(),
-            part => path.push(part),
-        }
-        path
-    })
 }

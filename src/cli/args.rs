@@ -2,7 +2,7 @@
 
 use super::resources::Resources;
 use super::settings::{CodeChoice, Device, FileOutput, HeightInput, Mips, NormalOutput, Settings, Slope, Tiles};
-use super::values::{ByteSize, MapChoice, WeightPair, choice, iterations, value};
+use super::values::{ByteSize, MapChoice, WeightPair, choice, count, iterations, value};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
@@ -186,7 +186,10 @@ impl ParallaxArguments {
 #[command(after_help = "\
 Folders are searched for files such as wall_height.png, wall_disp_2k.exr or
 Wall_Displacement.tif; files are taken as they are. In --out,
-tex/brick/wall_height_2k.png becomes brick/wall_normal_2k.png.
+tex/brick/wall_height_2k.png becomes brick/wall_normal_2k.png. With --neighbours
+files that are called like its tiles are found too, whatever they end in:
+dem/tile_0_0.png becomes tile_0_0_normal.png. Height maps with other names are
+maps of their own; a file that is named must be a tile.
 
 Each setting comes from the command line, else from the last [[override]] in
 texbake.toml that has it and whose glob matches the file's path below the
@@ -212,8 +215,9 @@ is as it was; after a kill a run goes on where it stopped. Delete the file, or
 use --force, to bake all.
 
 --watch ends with 130 when it is interrupted (Ctrl-C), with 2 if the settings
-are wrong at the start, and says what fails meanwhile. Where folders send no
-word of changes, as over some networks, run texbake bake again instead.
+are wrong at the start, and says what fails meanwhile. Its --report is that of
+the last round. Where folders send no word of changes, as over some networks,
+run texbake bake again instead.
 
 texbake plan writes a texbake.toml of what a scene needs, with predictions of
 what its maps are off by. --check-plan reads the maps that were baked, measures
@@ -227,6 +231,8 @@ Examples:
   texbake bake textures --out baked --watch
   texbake bake textures --out baked --convention dx --format tif --bits 16
   texbake bake textures --out baked --format dds --block-compression bc7
+  texbake bake textures --out b --format ktx2 --mips --maps normal,roughness
+  texbake bake dem --out b --neighbours 'tile_{x}_{y}.png' --edge clamp
   texbake bake dem_1.tif dem_2.tif --out baked --edge clamp --report r.json")]
 pub struct BakeArguments {
     /// Folders to search, and files
@@ -237,7 +243,7 @@ pub struct BakeArguments {
     #[arg(short, long, value_name = "FOLDER")]
     pub out: PathBuf,
 
-    /// End of a height map's name, in any case; may be repeated
+    /// End of a height map's name, in any case, instead of the usual ones; may be repeated
     /// [default: _height _h _disp _displacement _bump _heightmap]
     #[arg(long, value_name = "TEXT", help_heading = "Files")]
     pub suffix: Vec<String>,
@@ -264,7 +270,8 @@ pub struct BakeArguments {
     pub watch: bool,
 
     /// Files baked at the same time, each with its own rows in memory [default: one more than the cores]
-    #[arg(short, long, value_name = "N", help_heading = "Where it runs")]
+    #[arg(short, long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
+    #[arg(help_heading = "Where it runs")]
     pub jobs: Option<NonZeroUsize>,
 
     /// Steps towards the eye that a shader takes through a parallax map, for the numbers in --report

@@ -61,6 +61,7 @@ fn job(arguments: &BlendArguments, method: Method) -> Result<BlendJob, Failure> 
         format: arguments.normal.format(&arguments.output, &write)?,
         precision: formula.precision.unwrap_or_default(),
     };
+    arguments.file.check_effect([arguments.output.as_path()])?;
     let max_bytes = max_bytes(inputs.max_bytes);
     let read = |encoding, channels, convention: Option<Convention>| NormalReadOptions {
         encoding,

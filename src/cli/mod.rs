@@ -9,6 +9,7 @@ pub(crate) mod config;
 mod devices;
 mod diff;
 mod exit;
+mod jobs;
 mod measure;
 mod normal;
 mod parallax;

@@ -20,6 +20,8 @@ pub fn normal(arguments: &NormalArguments) -> Result<Exit, Failure> {
         check_roughness(path, options.format, &write).map(|()| options)
     });
     let options = settings.slope.bake(Some(format), None, roughness.transpose()?)?;
+    settings.file.check_effect([arguments.output.as_path()])?;
+    settings.roughness.check_effect(arguments.roughness.is_some())?;
     let job = Job {
         input: arguments.input.clone(),
         outputs: Maps {

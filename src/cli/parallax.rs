@@ -14,6 +14,7 @@ pub fn parallax(arguments: &ParallaxArguments) -> Result<Exit, Failure> {
     let write = arguments.mips.write(arguments.file.write());
     let format = arguments.codes().parallax(&arguments.output, &write)?;
     let options = arguments.slope.bake(None, Some(format), None)?;
+    arguments.file.check_effect([arguments.output.as_path()])?;
     let job = Job {
         input: arguments.input.clone(),
         outputs: Maps { parallax: Some(arguments.output.clone()), ..Maps::default() },

@@ -7,9 +7,10 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 use std::thread::JoinHandle;
 use texbake::batch::{
-    BlendJob, BlendOutcome, FileResult, Freshness, Job, ModelTangents, Outcome, ParallaxNumbers, Reason, Report,
-    TangentJob, describe_codes,
+    BlendJob, BlendOutcome, FileResult, Freshness, Job, ModelTangents, Outcome, ParallaxNumbers, Report, TangentJob,
+    describe_codes,
 };
+use texbake::io::BlockCompression;
 use texbake::measure::digits;
 use texbake::verify::{Agreement, Comparison, Errors};
 use texbake::{Baked, Baker, Device, Error, HeightType, Maps, NormalFormat, Ran, Scale, Size};
@@ -86,18 +87,23 @@ pub fn file_line(job: &Job, outcome: &Outcome) -> String {
 pub fn bake_line(job: &Job, outcome: &Outcome) -> Option<String> {
     let baked = outcome.result.as_ref().ok()?;
     let options = &job.options;
-    let normal = options.normal.map(describe_normals);
-    let parallax = options.parallax.map(|format| format!("parallax {}", describe_codes(format)));
+    let blocks = job.write.blocks;
+    let normal = options.normal.map(|format| format!("{}{}", describe_normals(format), in_blocks(blocks)));
+    let of_one = blocks.map(|_| BlockCompression::Bc4);
+    let parallax = |format| format!("parallax {}{}", describe_codes(format), in_blocks(of_one));
+    let parallax = options.parallax.map(parallax);
+    let levels = job.write.mips.then(|| format!(", {}", plural(baked.size.levels().len(), "level")));
     let formats: Vec<String> = normal.into_iter().chain(parallax).collect();
     // Codes from 0 to white over one texel; floats have a height of their own.
     let nearly_flat = options.scale == Scale::default() && baked.height_type != HeightType::F32;
     Some(format!(
-        "{}: {}, {} to {}{}, scale {}{}, {}; {}",
+        "{}: {}, {} to {}{}{}, scale {}{}, {}; {}",
         outputs(job),
         size(job, baked),
         baked.height_type,
         formats.join(" and "),
         job.normals.iter().map(|normals| format!(" with {}", normals.path.display())).collect::<String>(),
+        levels.unwrap_or_default(),
         baked.scale,
         if nearly_flat { " (nearly flat: see --scale)" } else { "" },
         options.precision,
@@ -131,7 +137,7 @@ pub fn blend_line(job: &BlendJob, method: &str, blended: &BlendOutcome) -> Optio
         job.output.display(),
         done.size,
         inputs.collect::<Vec<_>>().join(" and "),
-        describe_normals(job.options.format),
+        format_args!("{}{}", describe_normals(job.options.format), in_blocks(job.write.blocks)),
         job.options.precision,
         how_it_ran(&done.ran, done.size, &job.baker, &blended.outcome),
     ))
@@ -204,6 +210,16 @@ fn plural(count: usize, what: &str) -> String {
 fn describe_normals(format: NormalFormat) -> String {
     let NormalFormat { encoding, depth, channels, convention } = format;
     format!("{encoding} {depth} {channels} {convention}")
+}
+
+/// ` in bc7 blocks`.
+fn in_blocks(blocks: Option<BlockCompression>) -> String {
+    match blocks {
+        // What its readers see, whatever was asked for.
+        Some(BlockCompression::Bc5) => " in bc5 blocks, x and y alone".into(),
+        Some(blocks) => format!(" in {blocks} blocks"),
+        None => String::new(),
+    }
 }
 
 /// The size of the maps: `256 x 256`, or `256 x 256 (shrunk by 4)`.
@@ -288,6 +304,7 @@ pub fn summary(report: &Report, jobs: &[Job], outcomes: &[Outcome]) -> String {
         (totals.stopped, "stopped"),
         (totals.not_begun, "not begun"),
         (report.left_out.len(), "left out"),
+        (report.errors.len(), if report.errors.len() == 1 { "error" } else { "errors" }),
     ] {
         if count > 0 {
             counts.push(format!("{count} {what}"));
@@ -318,26 +335,24 @@ pub fn summary(report: &Report, jobs: &[Job], outcomes: &[Outcome]) -> String {
     line
 }
 
-/// What would become of each file of a folder, and why.
-pub fn plan_table(jobs: &[Job], plan: &[Freshness]) -> String {
-    let line = |(job, freshness): (&Job, &Freshness)| {
+/// What would become of each file of a folder, and why; these are the outcomes of a dry run.
+pub fn plan_table(jobs: &[Job], outcomes: &[Outcome]) -> String {
+    let line = |(job, outcome): (&Job, &Outcome)| {
         let files = format!("{} -> {}", job.input.display(), outputs(job));
-        match freshness {
-            Freshness::Fresh => format!("fresh {files}"),
-            Freshness::Stale(Reason::Refused(reason)) => format!("fail {files}: {reason}"),
-            Freshness::Stale(reason) => format!("bake {files}: {reason}"),
+        match (job.failure(outcome), &outcome.freshness) {
+            (Some(reason), _) => format!("fail {files}: {reason}"),
+            (None, Some(Freshness::Stale(reason))) => format!("bake {files}: {reason}"),
+            (None, Some(Freshness::Fresh) | None) => format!("fresh {files}"),
         }
     };
-    let count = |is: fn(&Freshness) -> bool| plan.iter().filter(|freshness| is(freshness)).count();
-    let fresh = count(|it| *it == Freshness::Fresh);
-    let refused = count(|it| matches!(it, Freshness::Stale(Reason::Refused(_))));
-    let mut summary = format!("{} of {} files would be baked", plan.len() - fresh - refused, plan.len());
-    for (count, what) in [(fresh, "fresh"), (refused, "would fail")] {
+    let count = |result| outcomes.iter().filter(|outcome| FileResult::of(outcome) == result).count();
+    let mut summary = format!("{} of {} files would be baked", count(FileResult::NotBegun), outcomes.len());
+    for (count, what) in [(count(FileResult::Fresh), "fresh"), (count(FileResult::Failed), "would fail")] {
         if count > 0 {
             summary += &format!(", {count} {what}");
         }
     }
-    jobs.iter().zip(plan).map(line).chain([summary]).collect::<Vec<_>>().join("\n")
+    jobs.iter().zip(outcomes).map(line).chain([summary]).collect::<Vec<_>>().join("\n")
 }
 
 /// What could run bakes.

@@ -1,6 +1,6 @@
 //! What a run may take of the machine.
 
-use super::values::{ByteSize, value};
+use super::values::{ByteSize, count, value};
 use clap::Args;
 use std::num::NonZeroUsize;
 use texbake::stream::Monitor;
@@ -10,12 +10,13 @@ use texbake::{Error, Result};
 #[derive(Args, Debug)]
 pub struct Resources {
     /// Cores that the run takes; elsewhere than on Linux, threads that bake and compress [default: all]
-    #[arg(long, value_name = "N", help_heading = HEADING)]
+    #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true, help_heading = HEADING)]
     pub threads: Option<NonZeroUsize>,
 
     /// Most memory of the run: 512M, 2G. Files wait for each other; one that needs more by itself fails
     /// [default: unbounded]
-    #[arg(long, value_name = "BYTES", value_parser = value::<ByteSize>, help_heading = HEADING)]
+    #[arg(long, value_name = "BYTES", value_parser = value::<ByteSize>, allow_hyphen_values = true)]
+    #[arg(help_heading = HEADING)]
     pub memory: Option<ByteSize>,
 }
 

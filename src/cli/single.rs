@@ -2,6 +2,7 @@
 
 use super::args::Reporting;
 use super::exit::{Exit, Failure};
+use super::jobs::missing_tiles;
 use super::print::{bake_line, parallax_line, say};
 use super::progress::{Progress, Verbosity};
 use super::resources::Resources;
@@ -37,6 +38,10 @@ pub fn bake_one(
     let report_file = reporting.report.as_deref().map(|path| JsonFile::create("report", path, &files, None));
     let report_file = report_file.transpose()?;
 
+    let warnings = missing_tiles(&jobs);
+    if !reporting.quiet {
+        warnings.iter().for_each(|text| say(format_args!("warning: {text}")));
+    }
     let monitor = stopped_by_interrupts(resources.monitor()?);
     let progress = Progress::new(&[&jobs[0].input], &monitor, Verbosity::of(reporting, Verbosity::Warnings));
     let start = Instant::now();
@@ -48,7 +53,7 @@ pub fn bake_one(
         bake_line(&jobs[0], &outcomes[0]).iter().for_each(say);
         numbers.iter().map(|sidecar| parallax_line(&sidecar.numbers)).for_each(say);
     }
-    let report = Report::new(&jobs, &outcomes, time, &[], None, telling.iterations);
+    let report = Report { warnings, ..Report::new(&jobs, &outcomes, time, &[], None, telling.iterations) };
     if let Some(file) = report_file {
         file.write(&report)?;
     }

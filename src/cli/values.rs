@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::fmt;
-use std::num::NonZeroU32;
+use std::num::{NonZeroU32, NonZeroUsize};
 use std::str::FromStr;
 use texbake::batch::MapKind;
 use texbake::{Error, Rational};
@@ -57,7 +57,7 @@ impl FromStr for ByteSize {
         };
         let bytes = digits.parse::<u64>().ok().and_then(|count| count.checked_mul(1 << shift));
         let bytes = bytes.filter(|bytes| *bytes > 0).map(Self);
-        bytes.ok_or_else(|| wrong("max-bytes", text, "a whole number of bytes above zero, as 512M or 4G"))
+        bytes.ok_or_else(|| wrong("max-bytes", text, "a whole number of bytes from 1 to 16777215T, as 512M or 4G"))
     }
 }
 
@@ -101,7 +101,7 @@ impl MapChoice {
         match choices.len() - kinds.len() {
             0 => Ok(kinds),
             _ if kinds.is_empty() => Ok(kinds),
-            _ => Err(wrong("maps", "none and others", "none alone, or normal, parallax or both")),
+            _ => Err(wrong("maps", "none and others", "none alone, or a list of normal, parallax and roughness")),
         }
     }
 
@@ -120,6 +120,15 @@ impl FromStr for MapChoice {
         if text == "none" { Ok(Self::None) } else { text.parse().map(Self::Map) }
     }
 }
+
+/// A number of cores or jobs.
+pub fn count(text: &str) -> Result<NonZeroUsize, String> {
+    let count = text.parse().ok().filter(|count: &NonZeroUsize| count.get() <= MOST);
+    count.ok_or_else(|| format!("it must be a whole number from 1 to {MOST}"))
+}
+
+/// More than any machine has cores.
+const MOST: usize = 65535;
 
 /// Steps of a shader through a parallax map.
 pub fn iterations(text: &str) -> Result<NonZeroU32, String> {

@@ -11,7 +11,7 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
-use texbake::batch::Job;
+use texbake::batch::{Job, with_real_folder};
 use texbake::io::INPUT_EXTENSIONS;
 use texbake::stream::Monitor;
 
@@ -113,15 +113,15 @@ struct Known {
 
 impl Known {
     fn new(arguments: &BakeArguments) -> Self {
-        let settings = arguments.config.as_deref().map(place);
+        let settings = arguments.config.as_deref().map(with_real_folder);
         Self { settings, inputs: HashSet::new(), outputs: HashSet::new() }
     }
 
     /// Takes the files of a round's jobs.
     fn take(&mut self, jobs: &[Job]) {
         let files = Job::all_files(jobs);
-        self.inputs = files.iter().flat_map(|files| &files.inputs).map(|path| place(path)).collect();
-        self.outputs = files.iter().flat_map(|files| &files.outputs).map(|path| place(path)).collect();
+        self.inputs = files.iter().flat_map(|files| &files.inputs).map(|path| with_real_folder(path)).collect();
+        self.outputs = files.iter().flat_map(|files| &files.outputs).map(|path| with_real_folder(path)).collect();
     }
 
     /// Whether it may be about something that a bake reads; a round in which that turns out wrong is a short one.
@@ -137,7 +137,7 @@ impl Known {
 
     fn is_of_interest(&self, path: &Path) -> bool {
         let name = path.file_name().unwrap_or_default();
-        let place = place(path);
+        let place = with_real_folder(path);
         if name.as_encoded_bytes().starts_with(b".texbake-") || self.outputs.contains(&place) {
             return false;
         }
@@ -148,11 +148,4 @@ impl Known {
         let is_folder = path.is_dir() || (extension.is_none() && !path.exists());
         is_image || is_settings || is_folder || self.inputs.contains(&place)
     }
-}
-
-/// A file's path with its folder written in one way only.
-fn place(path: &Path) -> PathBuf {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-    folder.join(path.file_name().unwrap_or_default())
 }

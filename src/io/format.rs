@@ -48,6 +48,9 @@ impl FileFormat {
         }
         let format = Self::of_bytes(&first).or_else(|| (extension(path) == "tga").then_some(TGA));
         format.ok_or_else(|| {
+            if let Some(name) = of_written_only(&first) {
+                return Error::file(path, format!("{name} is written, and not read"), KNOWN_INPUTS);
+            }
             let is_model = first.starts_with(b"glTF") || MODEL_EXTENSIONS.contains(&extension(path).as_str());
             let remedy = if is_model { format!("{KNOWN_INPUTS}; {FOR_MODELS}") } else { KNOWN_INPUTS.to_owned() };
             Error::file(path, "this is no format that texbake knows", remedy)
@@ -65,6 +68,15 @@ impl FileFormat {
             [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => Some(Self::Raster(ImageFormat::WebP)),
             _ => None,
         }
+    }
+}
+
+/// The name of a format that is written only, by the first bytes of its files.
+fn of_written_only(first: &[u8]) -> Option<&'static str> {
+    match first {
+        [b'D', b'D', b'S', b' ', ..] => Some("DDS"),
+        [0xab, b'K', b'T', b'X', b' ', b'2', b'0', 0xbb, ..] => Some("KTX2"),
+        _ => None,
     }
 }
 

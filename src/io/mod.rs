@@ -23,6 +23,8 @@ mod gltf;
 mod groups;
 #[cfg(feature = "cli")]
 mod halo;
+#[cfg(feature = "cli")]
+mod halo_rows;
 mod in_order;
 mod input;
 mod limits;
@@ -34,12 +36,16 @@ mod raster;
 mod raw;
 pub(crate) mod replace;
 mod samples;
+#[cfg(feature = "cli")]
+mod seam;
 mod shrink;
 mod sink;
 mod srgb;
 mod temporary;
 mod texture;
 mod tiff;
+#[cfg(feature = "cli")]
+mod wide_rows;
 mod write;
 
 pub use channel::Channel;
@@ -48,7 +54,9 @@ pub(crate) use crop::Cropped;
 pub use format::{INPUT_EXTENSIONS, default_format, default_parallax_format};
 pub use gltf::{LeftOut, Model, ModelFile, ModelFiles, ModelReadOptions, ModelReport, Placement, Primitive};
 #[cfg(feature = "cli")]
-pub(crate) use halo::{Halo, HaloRows, Reach, TileRow};
+pub(crate) use halo::{Halo, Reach, TileRow};
+#[cfg(feature = "cli")]
+pub(crate) use halo_rows::{HaloRows, SeamWarnings};
 pub use parallax::ParallaxReadOptions;
 pub use raw::{RawKind, RawLayout};
 #[cfg(feature = "cli")]
@@ -56,11 +64,10 @@ pub(crate) use sink::Witness;
 pub use texture::BlockCompression;
 #[cfg(feature = "cli")]
 pub(crate) use write::create_codes;
-#[cfg(feature = "cli")]
-pub(crate) use write::is_compressed;
 pub use write::{
     Compression, WriteOptions, check_normal_format, check_normals_with, check_parallax_format, check_parallax_with,
     check_roughness, create_normals, create_normals_with, create_parallax, create_parallax_with, create_roughness_with,
+    is_compressed,
 };
 
 use crate::error::Result;

@@ -112,6 +112,11 @@ pub fn create_roughness_with(
 /// # Errors
 /// As [`check_normals_with`], and [`crate::Error::Parameter`] without levels, for which there is no roughness to tell.
 pub fn check_roughness(path: &Path, format: RoughnessFormat, options: &WriteOptions) -> Result<()> {
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    if !matches!(OutputFormat::of(path)?, OutputFormat::Texture(_)) {
+        let range = "a .ktx2 or .dds file, with mips: roughness is what mip levels lose";
+        return Err(Error::parameter("roughness", name, range));
+    }
     let held = check_codes(path, format.texel(), &WriteOptions { mips: true, ..*options });
     held.map_err(|error| match error {
         Error::Parameter { parameter: "bits", value, range } => {
@@ -122,7 +127,6 @@ pub fn check_roughness(path: &Path, format: RoughnessFormat, options: &WriteOpti
     if options.mips {
         return Ok(());
     }
-    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
     Err(Error::parameter("mips", format_args!("off, for {name}"), "on: roughness is what mip levels lose"))
 }
 
@@ -161,8 +165,7 @@ pub fn check_parallax_with(path: &Path, format: ParallaxFormat, options: &WriteO
 }
 
 /// Whether [`WriteOptions::compression`] decides over the bytes of a file called `path`.
-#[cfg(feature = "cli")]
-pub(crate) fn is_compressed(path: &Path) -> bool {
+pub fn is_compressed(path: &Path) -> bool {
     matches!(OutputFormat::of(path), Ok(OutputFormat::Png))
 }
 

@@ -3,11 +3,12 @@
 use super::decision::{Decision, wrapped};
 use super::file_plan::{FilePlan, Plan, slashed};
 use super::prediction::Prediction;
+use crate::batch::place;
 use crate::error::{Error, Result, plain};
 use crate::io::replace::Replacement;
 use serde::Serialize;
 use std::io::{ErrorKind, Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// How a settings file begins that a plan has written, and that another plan may replace.
 const MARK: &str = "# Written by texbake plan.";
@@ -89,11 +90,6 @@ pub fn check_place(path: &Path, replaces_all: bool) -> Result<()> {
     }
     let remedy = "move it away, write elsewhere with -o, or replace it with --force";
     Err(Error::file(path, "texbake plan did not write this file, and would overwrite it", remedy))
-}
-
-/// Where a path leads to.
-fn place(path: &Path) -> PathBuf {
-    path.canonicalize().unwrap_or_else(|_| path.into())
 }
 
 impl FilePlan {

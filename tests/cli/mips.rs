@@ -138,7 +138,7 @@ fn what_has_no_levels_is_told_before_anything_is_baked() {
         ),
         (
             normal(&["n.ktx2", "--mips", "--roughness", "r.png"]),
-            "--mips is on, for r.png: it must be for .ktx2 and .dds",
+            "--roughness is r.png: it must be a .ktx2 or .dds file, with mips: roughness is what mip levels lose",
         ),
         (
             normal(&["n.ktx2", "--mips", "--roughness", "r.ktx2", "--base-roughness", "1.5"]),
@@ -156,6 +156,18 @@ fn what_has_no_levels_is_told_before_anything_is_baked() {
         (
             vec!["bake", "tex", "--out", "out", "--format", "dds", "--maps", "normal,roughness"],
             "--mips is off, for h_roughness.dds: it must be on",
+        ),
+        (
+            vec!["bake", "tex", "--out", "out", "--maps", "normal,roughness"],
+            "--maps is roughness too: it must be used with --format ktx2 or dds and with --mips: roughness is what mip",
+        ),
+        (
+            normal(&["n.dds", "--base-roughness", "0.5"]),
+            "--base-roughness is 0.5: it must be left out where there is no",
+        ),
+        (
+            vec!["bake", "tex", "--out", "out", "--roughness-method", "lean"],
+            "--roughness-method is lean: it must be left out where there is no roughness map",
         ),
     ] {
         let run = folder.run(&arguments).ends(2);

@@ -19,3 +19,4 @@ mod shaders;
 pub mod support;
 pub mod tangents;
 mod textures;
+mod tiles;

@@ -84,5 +84,5 @@ fn a_file_may_get_no_map() {
     folder.run(&["bake", "tex", "--out", "no", "--maps", "none"]).ends(0);
     assert!(folder.files("no").is_empty());
     let run = folder.run(&["bake", "tex", "--out", "no", "--maps", "normal,none"]).ends(2);
-    run.says("error: --maps", &["none and others", "none alone, or normal, parallax or both"]);
+    run.says("error: --maps", &["none and others", "none alone, or a list of normal, parallax and roughness"]);
 }

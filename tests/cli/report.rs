@@ -25,8 +25,10 @@ fn a_folder_is_reported_file_by_file() {
     let mut report = folder.json("report.json");
     let mut files = take(&mut report, "files");
     let mut totals = take(&mut report, "totals");
-    let expected =
-        json!({ "version": env!("CARGO_PKG_VERSION"), "settings": "tex/texbake.toml", "errors": [], "left_out": [] });
+    let expected = json!({
+        "version": env!("CARGO_PKG_VERSION"), "settings": "tex/texbake.toml", "errors": [], "warnings": [],
+        "left_out": [],
+    });
     assert_eq!(report, expected);
 
     let bytes = |name: &str| std::fs::metadata(folder.path(name)).unwrap().len();
@@ -93,14 +95,12 @@ fn what_textures_and_tiles_were_asked_for_is_reported() {
         "--maps=normal,roughness",
         "--mips",
         "--block-compression=bc5",
-        "--compression=small",
         "--roughness-method=toksvig",
         "--base-roughness=1/4",
     ]);
     for (name, expected) in [
         ("maps", json!("normal,roughness")),
         ("encoding", json!("unorm")),
-        ("compression", json!("small")),
         ("mips", json!(true)),
         ("roughness_method", json!("toksvig")),
         ("base_roughness", json!("0.25")),
@@ -113,7 +113,10 @@ fn what_textures_and_tiles_were_asked_for_is_reported() {
     folder.grey8("tex/t_1_0_height.png", 4, 4, bumps8);
     std::fs::remove_file(folder.path("tex/a_height.png")).unwrap();
     let found = options(&["--neighbours", "t_{x}_{y}_height.png", "--edge", "clamp"]);
-    assert_eq!(found["neighbours"], "edge, edge, edge; edge, here, t_1_0_height.png; edge, edge, edge");
+    assert_eq!(found["neighbours"], json!({ "right": "t_1_0_height.png" }));
+    let found = options(&["--neighbours", "t_{x}_{y}_height.png", "--edge", "wrap"]);
+    let sides = json!({ "left": "t_1_0_height.png", "right": "t_1_0_height.png" });
+    assert_eq!(found["neighbours"], sides);
 }
 
 #[test]
@@ -181,4 +184,35 @@ fn a_report_does_not_replace_the_settings() {
     let run = folder.run(&["bake", "tex", "--out", "out", "--report", "tex/texbake.toml"]).ends(1);
     assert!(run.stderr.contains("the report would overwrite the settings file"), "{}", run.stderr);
     assert_eq!(std::fs::read_to_string(settings).unwrap(), "[defaults]\nscale = 2\n");
+}
+
+/// An old report would stand for a run that did not come to its files.
+#[test]
+fn what_stops_a_bake_before_its_first_file_is_reported() {
+    let folder = Folder::new();
+    folder.grey8("tex/a_height.png", 3, 2, bumps8);
+    let bake = |more: &[&str], status| {
+        folder.run(&[&["bake", "tex", "--out", "out", "--report", "r.json", "-q"], more].concat()).ends(status);
+        folder.json("r.json")
+    };
+    assert_eq!(bake(&[], 0)["totals"]["baked"], 1);
+    for (arguments, status, reason) in [
+        (&["--config", "none.toml"][..], 2, "none.toml: "),
+        (&["--suffix", "_q"], 1, "tex: no height map found"),
+        (
+            &["--compression", "small", "--format", "exr"],
+            2,
+            "--compression is small: it must be left out where no output",
+        ),
+        (&["--memory", "1M"], 2, "--memory is 1M: "),
+    ] {
+        let report = bake(arguments, status);
+        assert!(report["errors"][0].as_str().unwrap().starts_with(reason), "{report}");
+        assert_eq!((&report["files"], &report["totals"]["files"]), (&json!([]), &json!(0)));
+    }
+    // Which files are inputs is not known then: no file but a report is replaced.
+    let input = std::fs::read(folder.path("tex/a_height.png")).unwrap();
+    let wrong = ["bake", "tex", "--out", "out", "--suffix", "_q", "--report", "tex/a_height.png"];
+    folder.run(&wrong).ends(1).says("error: ", &["no height map found"]);
+    assert!(std::fs::read(folder.path("tex/a_height.png")).unwrap() == input);
 }

@@ -212,14 +212,24 @@ fn no_threads_and_no_memory_are_refused() {
     let folder = Folder::new();
     folder.grey8("h.png", 9, 9, bumps8);
     for (arguments, words) in [
-        (["--threads", "0"], ["invalid value '0' for '--threads <N>'", ""]),
-        (["--threads", "-1"], ["'-1'", ""]),
+        (["--threads", "0"], ["invalid value '0' for '--threads <N>'", "it must be a whole number from 1 to 65535"]),
+        (
+            ["--memory", "-1"],
+            ["invalid value '-1' for '--memory", "it must be a whole number of bytes from 1 to 16777215T"],
+        ),
+        (["--memory", "99999999999G"], ["for '--memory <BYTES>'", "from 1 to 16777215T"]),
+        (["--threads", "-1"], ["invalid value '-1' for '--threads <N>'", "it must be a whole number from 1 to 65535"]),
         (["--memory", "0"], ["--memory", "0"]),
         (["--memory", "lots"], ["invalid value 'lots' for '--memory <BYTES>'", ""]),
     ] {
         let arguments = [&["normal", "h.png", "-o", "n.png", "--backend", "cpu"], &arguments[..]].concat();
         let run = folder.run(&arguments).ends(2);
         assert!(words.iter().all(|words| run.stderr.contains(words)), "{arguments:?}: {}", run.stderr);
+    }
+    for jobs in ["0", "-1", "many", "99999999999999999999"] {
+        let run = folder.run(&["bake", "h.png", "--out", "out", "--jobs", jobs]).ends(2);
+        let words = format!("invalid value '{jobs}' for '--jobs <N>': it must be a whole number from 1 to 65535");
+        assert!(run.stderr.contains(&words), "{}", run.stderr);
     }
     assert_eq!(folder.files("."), ["h.png"]);
 }

@@ -45,6 +45,21 @@ fn one_file_is_what_was_asked_for() {
     assert_eq!(normal(&["--encoding", "snorm", "--channels", "xy"]), 17);
     assert_eq!(normal(&["--bits", "16f"]), 97);
     assert_eq!(normal(&["--block-compression", "bc5", "--encoding", "snorm"]), 142);
+    for (arguments, told) in [
+        (["--block-compression", "bc7"], "unorm 8 xyz gl in bc7 blocks, 4 levels, scale 1 "),
+        (["--block-compression", "bc5"], "unorm 8 xyz gl in bc5 blocks, x and y alone, 4 levels, scale 1 "),
+    ] {
+        let run = folder.run(&[&["normal", "h.png", "-o", "n.dds", "--mips"], &arguments[..]].concat()).ends(0);
+        run.says("n.dds", &[told]);
+    }
+    let parallax = ["parallax", "h.png", "-o", "p.dds", "--block-compression", "bc5"];
+    folder.run(&parallax).ends(0).says("p.dds", &["parallax snorm 8 in bc4 blocks, scale 1 "]);
+    for (name, format) in [("n.dds", "DDS"), ("n.ktx2", "KTX2")] {
+        folder
+            .run(&["check", name])
+            .ends(1)
+            .says(name, &[&format!("{format} is written, and not read; texbake reads")]);
+    }
     folder.run(&["parallax", "h.png", "-o", "p.ktx2", "--backend", "cpu"]).ends(0);
     assert_eq!(vulkan(&folder, "p.ktx2"), 10);
     folder.run(&["blend", "h.png", "h.png", "-o", "b.ktx2"]).ends(1).says("h.png", &["height map"]);
@@ -59,6 +74,7 @@ fn what_does_not_fit_is_told_before_anything_is_baked() {
             ["n.png", "--block-compression", "bc5"],
             "--block-compression is bc5, for n.png: it must be for .ktx2 and .dds",
         ),
+        (["n.dds", "--compression", "small"], "--compression is small: it must be left out where no output is a PNG"),
         (["n.dds", "--block-compression", "bc4"], "--block-compression is bc4: it must be bc5 (x and y) or bc7"),
         (["n.dds", "--block-compression", "bc6"], "invalid value 'bc6' for '--block-compression"),
         (["n.ktx2", "--encoding", "biased"], "--encoding is biased with 8 bits, for n.ktx2: it must be unorm or snorm"),

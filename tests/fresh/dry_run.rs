@@ -104,3 +104,15 @@ fn clashes_are_told() {
             .says("error: ", &["cannot be used with"]);
     }
 }
+
+#[test]
+fn an_input_that_is_not_there_fails_as_in_the_run() {
+    let folder = textures();
+    let bake = ["bake", "tex/a_height.png", "texx", "--out", "out"];
+    let run = folder.run(&[&bake[..], &["--dry-run"]].concat()).ends(1);
+    let lines: Vec<&str> = run.stdout.lines().collect();
+    let reason = lines[1].strip_prefix("fail texx -> out/texx_normal.png: ").unwrap();
+    assert!(reason.starts_with("texx: ") && reason.ends_with("; check how its path is written"), "{reason}");
+    assert_eq!(lines[2], "1 of 2 files would be baked, 1 would fail");
+    folder.run(&bake).ends(1).says("failed ", &[reason]);
+}

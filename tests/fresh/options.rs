@@ -25,15 +25,15 @@ const CASES: &[Case] = &[
     ("precision", "tex", "--bits 16 --backend cpu", "--precision fast", "precision exact -> fast"),
     ("compression", "tex", "", "--compression balanced", "compression fast -> balanced"),
     ("compression", "tex", "", "--compression small", "compression fast -> small"),
-    ("compression", "tex", "--format tif", "--compression small", ""),
+    ("compression", "tex", "--format tif", "--config without_effect.toml", ""),
     ("mips", "tex", "--format ktx2", "--mips", "mips false -> true"),
     ("mips", "tex", "--format dds --block-compression bc5", "--mips", "mips false -> true"),
     ("roughness_method", "tex", ROUGH, "--roughness-method toksvig", "roughness-method lean -> toksvig"),
     ("base_roughness", "tex", ROUGH, "--base-roughness 0.25", "base-roughness 0 -> 0.25"),
     ("roughness_bits", "tex", ROUGH, "--roughness-bits 16", "roughness-bits 8 -> 16"),
-    ("roughness_method", "tex", "--format ktx2", "--roughness-method toksvig", ""),
-    ("base_roughness", "tex", "--format ktx2", "--base-roughness 0.25", ""),
-    ("roughness_bits", "tex", "--format ktx2", "--roughness-bits 16", ""),
+    ("roughness_method", "tex", "--format ktx2", "--config without_effect.toml", ""),
+    ("base_roughness", "tex", "--format ktx2 --mips", "--config without_effect.toml", ""),
+    ("roughness_bits", "tex", "--format dds", "--config without_effect.toml", ""),
     ("block_compression", "tex", "--format dds", "--block-compression bc7", "block-compression none -> bc7"),
     ("block_compression", "tex", "--format ktx2", "--block-compression bc5", "block-compression none -> bc5"),
     ("neighbours", "tiles", "", "--neighbours t_{x}_{y}_height.png", "neighbours off -> on"),
@@ -67,6 +67,8 @@ fn inputs() -> Folder {
     }
     let colours: Vec<u8> = (0..16 * 16 * 3u32).map(|index| (index.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
     folder.file("colours/a_height.png", png(16, 16, png::ColorType::Rgb, png::BitDepth::Eight, &colours));
+    let settings = "compression = 'small'\nroughness-method = 'toksvig'\nbase-roughness = 0.25\nroughness-bits = 16\n";
+    folder.file("without_effect.toml", format!("[defaults]\n{settings}"));
     folder.file("raw/a_height.raw", &colours[..16 * 16 * 2]);
     folder
 }

@@ -16,7 +16,8 @@ fn names_stay_below_the_output_folder() {
 
     let output = |template: &str, stem: &str| {
         let template: NameTemplate = template.parse().unwrap();
-        let found = Found { path: "x".into(), folder: "sub".into(), stem: stem.into(), size: String::new() };
+        let found =
+            Found { path: "x".into(), folder: "sub".into(), stem: stem.into(), size: String::new(), is_named: false };
         let maps = template.outputs(&found, &[MapKind::Normal], Path::new("out"), "png").unwrap();
         maps.normal.unwrap()
     };

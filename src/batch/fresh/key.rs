@@ -2,7 +2,7 @@
 
 use crate::baker::Ran;
 use crate::batch::{Job, MapKind, Neighbours};
-use crate::io::{Halo, NormalReadOptions, ReadOptions, WriteOptions, is_compressed};
+use crate::io::{NormalReadOptions, ReadOptions, WriteOptions, is_compressed};
 use crate::map::{NormalFormat, ParallaxFormat, RoughnessFormat};
 use crate::mips::RoughnessOptions;
 use crate::ops::Precision;
@@ -79,17 +79,7 @@ impl Key {
         self.set("neighbours", if neighbours.is_some() { "on" } else { "off" });
         let Some(neighbours) = neighbours else { return };
         // The edge modes are those of the job.
-        let Halo { rows: [over, own, under], edges: _ } = neighbours.halo();
-        for (side, reach) in [
-            ("above-left", &over.ends[0]),
-            ("above", &over.tile),
-            ("above-right", &over.ends[1]),
-            ("left", &own.ends[0]),
-            ("right", &own.ends[1]),
-            ("below-left", &under.ends[0]),
-            ("below", &under.tile),
-            ("below-right", &under.ends[1]),
-        ] {
+        for (side, reach) in neighbours.halo().sides() {
             self.set(&format!("neighbour-{side}"), reach);
         }
     }

@@ -44,14 +44,15 @@ impl FreshPlan<'_> {
         outcomes.into_iter().flatten().collect()
     }
 
-    /// What comes out without a bake: that of what is stale is not begun. Nothing is written.
+    /// What comes out without a bake: that of what is stale is not begun, or fails as its input is missing. Nothing is
+    /// written.
     pub fn dry_run(&self) -> Vec<Outcome> {
-        let not_begun = |decision: &Decision| Outcome {
+        let unbaked = |(job, decision): (&Job, &Decision)| Outcome {
             freshness: Some(decision.freshness()),
-            ..Outcome::unopened(Error::Cancelled)
+            ..Outcome::unopened(job.check_input().err().unwrap_or(Error::Cancelled))
         };
-        let outcomes = self.unbaked().into_iter().zip(&self.decisions);
-        outcomes.map(|(outcome, decision)| outcome.unwrap_or_else(|| not_begun(decision))).collect()
+        let outcomes = self.unbaked().into_iter().zip(self.jobs.iter().zip(&self.decisions));
+        outcomes.map(|(outcome, job)| outcome.unwrap_or_else(|| unbaked(job))).collect()
     }
 
     /// The outcomes of jobs that are fresh, or refused; `None` for those to bake.

@@ -4,7 +4,9 @@ use crate::cli::values::{choice, value};
 use clap::Args;
 use std::path::Path;
 use texbake::io::{WriteOptions, check_parallax_with};
-use texbake::{Depth, Encoding, ParallaxFormat, Rational, RoughnessFormat, RoughnessMethod, RoughnessOptions};
+use texbake::{
+    Depth, Encoding, Error, ParallaxFormat, Rational, Result, RoughnessFormat, RoughnessMethod, RoughnessOptions,
+};
 
 /// Whether there are mip levels.
 #[derive(Args, Debug, Clone, Default, PartialEq)]
@@ -65,6 +67,24 @@ impl Roughness {
             roughness_method: self.roughness_method.or(weaker.roughness_method),
             base_roughness: self.base_roughness.or(weaker.base_roughness),
             roughness_bits: self.roughness_bits.or(weaker.roughness_bits),
+        }
+    }
+
+    /// Fails if something is set and there is no roughness map.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`]
+    pub fn check_effect(&self, has_roughness: bool) -> Result<()> {
+        let set = [
+            ("roughness-method", self.roughness_method.map(|method| method.to_string())),
+            ("base-roughness", self.base_roughness.map(|base| base.to_string())),
+            ("roughness-bits", self.roughness_bits.map(|bits| bits.to_string())),
+        ];
+        match set.into_iter().find_map(|(parameter, value)| Some((parameter, value?))) {
+            Some((parameter, value)) if !has_roughness => {
+                Err(Error::Parameter { parameter, value, range: "left out where there is no roughness map".into() })
+            }
+            _ => Ok(()),
         }
     }
 

@@ -3,7 +3,7 @@
 use crate::cli::values::value;
 use clap::Args;
 use std::path::Path;
-use texbake::batch::{Neighbours, TileFolders, TileTemplate};
+use texbake::batch::{Found, Neighbours, TileFolders, TileTemplate};
 use texbake::{BakeOptions, Error, Result};
 
 /// What was set of the tiles beside a height map.
@@ -11,11 +11,13 @@ use texbake::{BakeOptions, Error, Result};
 pub struct Tiles {
     /// The height map is a tile of a larger map, and has such a name: tiles_{x}_{y}.png, where {x} counts the tiles to
     /// the right and {y} down the rows. Its borders continue in the tiles beside it in its folder, so that no seams are
-    /// seen; --edge is for the borders of the whole map
+    /// seen; --edge is for the borders of the whole map, and for those at a tile that is missing between others, which
+    /// is told
     #[arg(long, value_name = "TEMPLATE", value_parser = value::<TileTemplate>, help_heading = HEADING)]
     pub neighbours: Option<TileTemplate>,
 
-    /// Texels that tiles beside each other share: 1 for tiles of 1025 that cover 1024 [default: 0]
+    /// Texels that tiles beside each other share: 1 for tiles of 1025 that cover 1024. A warning says where those next
+    /// to a border are not the same in both tiles; or are the same although none are shared [default: 0]
     #[arg(long, value_name = "TEXELS", help_heading = HEADING)]
     pub overlap: Option<usize>,
 }
@@ -36,24 +38,44 @@ impl Tiles {
     /// # Errors
     /// As [`TileFolders::around`]; [`Error::Parameter`] for an overlap of no tiles.
     pub fn around(&self, input: &Path, options: &BakeOptions) -> Result<Option<Neighbours>> {
+        self.check_effect(self.neighbours.is_some())?;
         self.around_in(&mut TileFolders::default(), input, options)
     }
 
-    /// The same, with what is known of folders already.
-    pub fn around_in(
+    /// What lies around a height map that was found, with what is known of folders already. One of a folder with
+    /// another name is no tile.
+    pub fn around_found(
         &self,
         folders: &mut TileFolders,
-        input: &Path,
+        map: &Found,
         options: &BakeOptions,
     ) -> Result<Option<Neighbours>> {
+        let is_no_tile = !map.is_named && self.neighbours.as_ref().is_some_and(|template| !template.fits(&map.path));
+        if is_no_tile { Ok(None) } else { self.around_in(folders, &map.path, options) }
+    }
+
+    fn around_in(&self, folders: &mut TileFolders, input: &Path, options: &BakeOptions) -> Result<Option<Neighbours>> {
         let overlap = self.overlap.unwrap_or(0);
-        match (&self.neighbours, overlap) {
-            (Some(template), overlap) => folders.around(input, template, overlap, options).map(Some),
-            (None, 0) => Ok(None),
-            (None, overlap) => {
-                let range = "left out, or used with --neighbours".into();
-                Err(Error::Parameter { parameter: "overlap", value: overlap.to_string(), range })
-            }
+        let template = self.neighbours.as_ref();
+        template.map(|template| folders.around(input, template, overlap, options)).transpose()
+    }
+
+    /// Fails if something is set and no height map is a tile.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`]
+    pub fn check_effect(&self, has_tiles: bool) -> Result<()> {
+        let wrong =
+            |parameter, value: String, range: &str| Err(Error::Parameter { parameter, value, range: range.into() });
+        match (&self.neighbours, self.overlap) {
+            _ if has_tiles => Ok(()),
+            (Some(template), _) => wrong(
+                "neighbours",
+                template.to_string(),
+                "the name of one height map at least, with numbers for {x} and {y}",
+            ),
+            (None, Some(overlap)) => wrong("overlap", overlap.to_string(), "left out, or used with --neighbours"),
+            (None, None) => Ok(()),
         }
     }
 }

@@ -13,7 +13,7 @@ use std::io::{BufReader, Seek};
 use std::path::{Path, PathBuf};
 use tiff::decoder::{ChunkType, Decoder, DecodingResult, DecodingSampleType, Limits};
 use tiff::tags::{CompressionMethod, PhotometricInterpretation, PlanarConfiguration, Predictor, Tag};
-use tiff::{ColorType, TiffError};
+use tiff::{ColorType, TiffError, TiffUnsupportedError};
 
 /// Strips up to this many bytes of samples are decoded at once.
 const LARGE_STRIP_BYTES: u32 = 1 << 20;
@@ -296,6 +296,10 @@ fn reason(path: &Path) -> impl FnOnce(TiffError) -> Error + '_ {
         TiffError::LimitsExceeded => {
             Error::file(path, "it needs more memory than the limit", "raise it with --max-bytes")
         }
+        TiffError::UnsupportedError(
+            error @ (TiffUnsupportedError::UnknownCompressionMethod
+            | TiffUnsupportedError::UnsupportedCompressionMethod(_)),
+        ) => Error::file(path, error, "write it with deflate or LZW, or uncompressed"),
         TiffError::UnsupportedError(error) => {
             Error::file(path, error, "convert it to 8 or 16-bit grey or RGB, or to 32-bit floats")
         }
