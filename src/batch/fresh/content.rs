@@ -29,7 +29,7 @@ pub(super) struct Look {
 const TICK: Duration = Duration::from_secs(2);
 
 /// Bytes that are read between two looks for an interrupt.
-const PIECE: usize = 1 << 20;
+pub(super) const PIECE: usize = 1 << 20;
 
 impl Content {
     /// Of a file that was just written, and may be another one by now.
@@ -63,9 +63,8 @@ impl Look {
 /// BLAKE3 of the bytes to come, in hexadecimal digits.
 ///
 /// # Errors
-/// What the system says; [`ErrorKind::Interrupted`] if `monitor` says so, but what is shorter than a MiB is read to its
-/// end.
-pub(super) fn hash(bytes: &mut dyn Read, monitor: &Monitor) -> io::Result<String> {
+/// What the system says; [`ErrorKind::Interrupted`] if `monitor` says so, but no sooner than `patience` bytes are read.
+pub(super) fn hash(bytes: &mut dyn Read, patience: u64, monitor: &Monitor) -> io::Result<String> {
     let mut hasher = blake3::Hasher::new();
     let mut piece = vec![0; PIECE];
     loop {
@@ -75,7 +74,7 @@ pub(super) fn hash(bytes: &mut dyn Read, monitor: &Monitor) -> io::Result<String
             Err(error) if error.kind() == ErrorKind::Interrupted => {}
             Err(error) => return Err(error),
         }
-        if hasher.count() >= PIECE as u64 && monitor.is_cancelled() {
+        if hasher.count() >= patience && monitor.is_cancelled() {
             return Err(ErrorKind::Interrupted.into());
         }
     }
@@ -85,6 +84,15 @@ pub(super) fn hash(bytes: &mut dyn Read, monitor: &Monitor) -> io::Result<String
 mod tests {
     use super::*;
     use std::time::UNIX_EPOCH;
+
+    #[test]
+    fn an_interrupt_is_noticed_where_patience_ends() {
+        let (bytes, monitor) = (vec![7; 3 * PIECE], Monitor::default());
+        monitor.cancel();
+        let hash_of = |patience: usize| hash(&mut bytes.as_slice(), patience as u64, &monitor);
+        assert_eq!(hash_of(2 * PIECE).unwrap_err().kind(), ErrorKind::Interrupted);
+        assert_eq!(hash_of(4 * PIECE).unwrap(), blake3::hash(&bytes).to_hex().as_str());
+    }
 
     #[test]
     fn only_files_that_were_left_alone_for_a_tick_are_settled() {

@@ -1,7 +1,7 @@
 //! Which of many files are to be baked, and why.
 
 use super::check::check;
-use super::content::{Content, Look};
+use super::content::{Content, Look, PIECE};
 use super::line::Line;
 use super::reader::{Reader, Seen};
 use super::reason::{Freshness, Reason};
@@ -76,7 +76,7 @@ impl<'a> FreshPlan<'a> {
     pub fn new(jobs: &'a [Job], folder: &Path, is_forced: bool, monitor: &Monitor) -> Self {
         let (record, warning) = Record::read(folder);
         let seen = Seen::default();
-        let reader = Reader { seen: &seen, monitor };
+        let reader = Reader { seen: &seen, monitor, patience: PIECE as u64 };
         let decide = |(job, refusal): (&Job, Option<Refusal>)| match refusal {
             Some(refusal) => Decision::Refused(refusal),
             None => Decision::about(job, &record, is_forced, reader),

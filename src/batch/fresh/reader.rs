@@ -18,6 +18,8 @@ pub(super) struct Seen(Mutex<HashMap<PathBuf, Content>>);
 pub(super) struct Reader<'a> {
     pub seen: &'a Seen,
     pub monitor: &'a Monitor,
+    /// Bytes of a file that are read in spite of an interrupt.
+    pub patience: u64,
 }
 
 impl Seen {
@@ -46,7 +48,8 @@ impl Reader<'_> {
         if !std::fs::metadata(path)?.is_file() {
             return Err(io::Error::other("it is no file"));
         }
-        let content = Content { hash: hash(&mut File::open(path)?, self.monitor)?, state: look.settled() };
+        let content =
+            Content { hash: hash(&mut File::open(path)?, self.patience, self.monitor)?, state: look.settled() };
         if Look::at(path)?.state != look.state {
             return Ok(None);
         }
@@ -80,7 +83,7 @@ mod tests {
         let path = folder.path().join("h.raw");
         fs::write(&path, "heights").unwrap();
         let (seen, monitor) = (Seen::default(), Monitor::default());
-        let reader = Reader { seen: &seen, monitor: &monitor };
+        let reader = Reader { seen: &seen, monitor: &monitor, patience: 0 };
         let look = Look { is_settled, ..Look::at(&path).unwrap() };
         let first = reader.content(&path, &look).unwrap().unwrap();
         assert_eq!(first.hash, blake3::hash(b"heights").to_hex().as_str());
@@ -107,7 +110,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("h.raw");
         let (seen, monitor) = (Seen::default(), Monitor::default());
-        let reader = Reader { seen: &seen, monitor: &monitor };
+        let reader = Reader { seen: &seen, monitor: &monitor, patience: 0 };
         for (content, look_is_old) in [("heights", false), ("others", false), ("and others", true)] {
             let before = Look::at(&path).ok();
             fs::write(&path, content).unwrap();

@@ -12,13 +12,17 @@ use crate::error::Error;
 use crate::stream::Monitor;
 use std::path::Path;
 
+/// Bytes of an input that are read after its bake in spite of an interrupt: what is complete is worth the tenth of a
+/// second for which the program goes on.
+const PATIENCE: u64 = 64 << 20;
+
 impl FreshPlan<'_> {
     /// Runs the jobs that are stale as [`run`](crate::batch::run) does, `at_once` of them at a time; the others come out
     /// as they were baked then. Jobs that fail do not stop others, and nothing is remembered of them.
     ///
     /// Each job that is complete is remembered at once, in the record of the plan's folder. So a run that is killed, or
-    /// whose `monitor` is cancelled, goes on where it stopped; only of a job whose large inputs would still have to be
-    /// read at that moment is nothing remembered. A record that cannot be written is a warning of
+    /// whose `monitor` is cancelled, goes on where it stopped; only of a job with an input of more than 64 MiB that would
+    /// still have to be read at that moment is nothing remembered. A record that cannot be written is a warning of
     /// [`FreshPlan::warnings`], and no job's error.
     ///
     /// `watch` is told of all jobs by their place in the list of all, first of those that are not begun.
@@ -86,7 +90,7 @@ impl FreshPlan<'_> {
         let (Ok(baked), Decision::Stale { inputs, .. }) = (&outcome.result, &self.decisions[place]) else { return };
         let job = &self.jobs[place];
         let Files { inputs: files, outputs } = job.files();
-        let reader = Reader { seen: &self.seen, monitor };
+        let reader = Reader { seen: &self.seen, monitor, patience: PATIENCE };
         let inputs = files.iter().zip(inputs).map(|(input, before)| before.unchanged(input, reader));
         let inputs = inputs.collect::<Option<Vec<_>>>().filter(|inputs| inputs.len() == files.len());
         let output = |path: &&Path| Some(Output { name: self.record.name(path), content: written?.content(path)? });

@@ -18,7 +18,7 @@ impl Written {
         let (Self(contents), output) = (self.clone(), output.to_owned());
         Box::new(move |bytes| {
             // As much as is on its way to the disk at that moment, and that is not interrupted either.
-            let content = Content::written(hash(bytes, &Monitor::default())?);
+            let content = Content::written(hash(bytes, 0, &Monitor::default())?);
             contents.lock().unwrap_or_else(PoisonError::into_inner).insert(output, content);
             Ok(())
         })
