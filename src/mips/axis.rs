@@ -15,6 +15,19 @@ pub(super) struct Axis {
     pub count: usize,
 }
 
+/// What a texel covers.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Covered {
+    /// The finer texels, the first and the last of them perhaps in part.
+    pub finer: Range<usize>,
+    /// Parts of the first one.
+    pub left: u64,
+    /// Parts of each between the first and the last one.
+    pub inner: u64,
+    /// Parts of the last one.
+    pub right: u64,
+}
+
 impl Axis {
     /// `count` texels, at most `texels`, over `texels` finer ones.
     pub fn new(texels: usize, count: usize) -> Self {
@@ -36,6 +49,23 @@ impl Axis {
     pub fn covered(self, i: usize) -> Range<usize> {
         let border = i as u64 * self.length;
         (border / self.parts) as usize..(border + self.length).div_ceil(self.parts) as usize
+    }
+
+    /// What the texels from texel `first` on cover, without a division for each.
+    pub fn texels(self, first: usize) -> impl Iterator<Item = Covered> {
+        let Self { parts, length, count } = self;
+        let border = first as u64 * length;
+        let (whole, rest) = ((length / parts) as usize, length % parts);
+        let (mut finer, mut cut) = ((border / parts) as usize, border % parts);
+        (first..count).map(move |_| {
+            let (start, left) = (finer, parts - cut);
+            (finer, cut) = (finer + whole, cut + rest);
+            if cut >= parts {
+                (finer, cut) = (finer + 1, cut - parts);
+            }
+            let (end, right) = if cut == 0 { (finer, parts) } else { (finer + 1, cut) };
+            Covered { finer: start..end, left, inner: parts, right }
+        })
     }
 
     /// The parts of the finer texel `x` that texel `i` covers.
@@ -74,6 +104,14 @@ mod tests {
                     });
                 }
                 assert_eq!(parts, vec![axis.parts; texels], "{count} of {texels}");
+                for first in 0..count {
+                    let one_by_one = (first..count).map(|i| {
+                        let finer = axis.covered(i);
+                        let [left, right] = [finer.start, finer.end - 1].map(|x| axis.weight(i, x));
+                        Covered { finer, left, inner: axis.parts, right }
+                    });
+                    assert!(axis.texels(first).eq(one_by_one), "{count} of {texels} from {first}");
+                }
             }
         }
     }

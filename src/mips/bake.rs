@@ -75,7 +75,7 @@ pub(crate) fn held_bytes(plan: &BakePlan, maps: &Maps<MapOut>, threads: usize) -
     let has_levels = |map: &Option<MapOut>| map.as_ref().is_some_and(|map| map.levels.is_some());
     let mut bytes = 0;
     if has_levels(&maps.normal) || has_levels(&maps.parallax) {
-        bytes += MapLevels::held_bytes(plan, rows, threads);
+        bytes += MapLevels::held_bytes(plan, rows);
     }
     if has_levels(&maps.roughness)
         && let Some(options) = plan.roughness

@@ -33,15 +33,13 @@ impl<'a> MapLevels<'a> {
         Self { plan, sums, sinks }
     }
 
-    /// Bytes that are held at most while strips of `rows` rows are added on `threads` threads.
-    pub fn held_bytes(plan: &BakePlan, rows: usize, threads: usize) -> u64 {
+    /// Bytes that are held at most while strips of `rows` rows are added.
+    pub fn held_bytes(plan: &BakePlan, rows: usize) -> u64 {
         let planes = planes(plan);
         let texel_bytes = plan.outputs().map(|format| format.bytes()).sum();
         match plan.height_type {
-            HeightType::U8 | HeightType::U16 => {
-                Pyramid::<i32>::held_bytes(plan.size, planes, texel_bytes, rows, threads)
-            }
-            HeightType::F32 => Pyramid::<f32>::held_bytes(plan.size, planes, texel_bytes, rows, threads),
+            HeightType::U8 | HeightType::U16 => Pyramid::<i32>::held_bytes(plan.size, planes, texel_bytes, rows),
+            HeightType::F32 => Pyramid::<f32>::held_bytes(plan.size, planes, texel_bytes, rows),
         }
     }
 }

@@ -1,22 +1,23 @@
 //! Sums of what texels hold over the texels of every level, while the rows of level 0 come.
 
 use super::level::{Level, levels};
-use super::sample::{Sample, Sum, add_pairs, add_weighted};
+use super::sample::{Sample, Sum, add_along};
 use crate::map::Size;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Columns whose sums one thread makes at a time: they stay in the first cache.
+/// Texels of a row whose sums one thread makes at a time: they stay in the first cache.
 const COLUMNS: usize = 1 << 10;
 
 /// Sums over the texels of each level, of several planes of samples.
 ///
-/// The order of sums, which matters to floats: in each column of the level that a level is made of (see [`levels`]) from
-/// the top down, but row 0 last; then along the row from the left. Row 0 is last because the first row of a map that
-/// wraps may travel last; so the order is the same for every order of rows and every height of bands.
+/// The order of sums, which matters to floats: along each row of the level that a level is made of (see [`levels`]) the
+/// first texel under one, the sum of those between from the left, and the last texel, each times its weight; then rows,
+/// times theirs, from the top down, but row 0 last. Row 0 is last because the first row of a map that wraps may travel
+/// last; so the order is the same for every order of rows and every height of bands.
 ///
-/// A row is `planes` rows of one value for each texel, one after the other. Besides the rows that come in, three rows of
-/// each level are held.
+/// A row is `planes` rows of one value for each texel, one after the other. Besides the rows that come in, and those of
+/// levels that they complete, two rows of each level are held.
 pub(super) struct Pyramid<T: Sample> {
     size: Size,
     planes: usize,
@@ -28,9 +29,9 @@ pub(super) struct Pyramid<T: Sample> {
 /// A level whose rows come into being.
 struct LevelSums<S> {
     level: Level,
-    /// The columns of the source over its row 0, to which row 0 of the source is still to be added.
+    /// Its row 0, to which row 0 of the source is still to be added.
     first: Vec<S>,
-    /// The columns of the source over the row that is not complete, or nothing.
+    /// Its row that is not complete, or nothing.
     open: Vec<S>,
 }
 
@@ -55,23 +56,19 @@ impl<T: Sample> Pyramid<T> {
         Self { size, planes, levels: levels(size).into_iter().map(level).collect(), first_row: Vec::new() }
     }
 
-    /// Bytes that are held at most while `rows` rows are added at once on `threads` threads: samples, sums, and the
-    /// codes, `texel_bytes` to a texel, that the complete rows of one level become.
-    pub fn held_bytes(size: Size, planes: usize, texel_bytes: usize, rows: usize, threads: usize) -> u64 {
+    /// Bytes that are held at most while `rows` rows are added at once: samples, sums, and the codes, `texel_bytes` to a
+    /// texel, that the complete rows of one level become.
+    pub fn held_bytes(size: Size, planes: usize, texel_bytes: usize, rows: usize) -> u64 {
         let levels = levels(size);
-        let row_bytes = |width: usize, each: usize| planes * width * each;
         let complete_texels = |level: &Level| {
             let complete = (rows * level.size.height()).div_ceil(size.height()) + 1;
             complete.min(level.size.height()) * level.size.width()
         };
-        let sums_of_level = |level: &Level| {
-            let source_width = level.source.checked_sub(1).map_or(size.width(), |source| levels[source].size.width());
-            row_bytes(2 * source_width + complete_texels(level), size_of::<T::Sum>())
-        };
-        let samples = (rows + 1) * row_bytes(size.width(), size_of::<T>());
-        let columns = threads * row_bytes(size.width(), size_of::<T::Sum>());
+        let texels_of_sums = |level: &Level| 2 * level.size.width() + complete_texels(level);
+        let samples = (rows + 1) * size.width() * planes * size_of::<T>();
+        let sums = levels.iter().map(texels_of_sums).sum::<usize>() * planes * size_of::<T::Sum>();
         let codes = levels.iter().map(complete_texels).max().unwrap_or(0) * texel_bytes;
-        (samples + columns + codes + levels.iter().map(sums_of_level).sum::<usize>()) as u64
+        (samples + sums + codes) as u64
     }
 
     /// Adds rows of level 0 from row `first` on; they come from the top, but row 0 at any time. What comes back are the
@@ -95,12 +92,18 @@ impl<T: Sample> Pyramid<T> {
     }
 
     fn sum_up(&mut self, rows: Range<usize>, samples: &[T]) -> Vec<Rows<T::Sum>> {
+        let Self { planes, levels, .. } = self;
+        let from_largest = |sums: &mut LevelSums<T::Sum>| match sums.level.source {
+            0 => sums.add(*planes, rows.clone(), samples),
+            _ => (0..0, Vec::new()),
+        };
+        let added: Vec<_> = levels.par_iter_mut().map(from_largest).collect();
         let mut complete: Vec<Rows<T::Sum>> = Vec::new();
-        for (index, sums) in self.levels.iter_mut().enumerate() {
+        for (index, (sums, added)) in levels.iter_mut().zip(added).enumerate() {
             let Level { size, source, weight, .. } = sums.level;
             let (rows, added) = match source.checked_sub(1) {
-                None => sums.add(self.planes, rows.clone(), samples),
-                Some(source) => sums.add(self.planes, complete[source].rows.clone(), &complete[source].sums),
+                None => added,
+                Some(source) => sums.add(*planes, complete[source].rows.clone(), &complete[source].sums),
             };
             complete.push(Rows { level: index + 1, weight, width: size.width(), rows, sums: added });
         }
@@ -114,57 +117,51 @@ impl<S: Sum> LevelSums<S> {
         if rows.is_empty() {
             return (0..0, Vec::new());
         }
-        let Level { size, y, .. } = self.level;
-        let row_samples = samples.len() / rows.len();
+        let Level { size, x, y, .. } = self.level;
+        let (width, source_width) = (size.width(), samples.len() / rows.len() / planes);
         let touched = y.covering(&rows);
         let is_complete = |row: usize| if row == 0 { rows.start == 0 } else { y.covered(row).end <= rows.end };
         let complete_end = touched.clone().rev().find(|row| is_complete(*row)).map_or(touched.start, |row| row + 1);
         let complete = touched.start.max(usize::from(rows.start > 0)).min(complete_end)..complete_end;
 
-        // Threads share the rows that become complete or, where those are few, the columns of each.
-        let block = if complete.len() < rayon::current_num_threads() { COLUMNS } else { row_samples };
-        let columns_of = |row: usize, begun: Vec<S>| {
-            let mut columns = if begun.is_empty() { vec![S::default(); row_samples] } else { begun };
+        // Threads share the rows that become complete or, where those are few, the texels of each.
+        let block = if complete.len() < rayon::current_num_threads() { COLUMNS } else { width };
+        let add_rows = |row: usize, sums: &mut [S]| {
             let covered = y.covered(row);
-            columns.par_chunks_mut(block).enumerate().for_each(|(index, columns)| {
+            let add_block = |plane: usize, first: usize, sums: &mut [S]| {
                 for source in covered.start.max(rows.start)..covered.end.min(rows.end) {
-                    let samples = &samples[(source - rows.start) * row_samples + index * block..][..columns.len()];
-                    add_weighted(samples, y.weight(row, source), columns);
+                    let samples = &samples[((source - rows.start) * planes + plane) * source_width..][..source_width];
+                    add_along(x, first, samples, y.weight(row, source), sums);
                 }
+            };
+            sums.par_chunks_mut(width).enumerate().for_each(|(plane, sums)| {
+                let blocks = sums.par_chunks_mut(block).enumerate();
+                blocks.for_each(|(index, sums)| add_block(plane, index * block, sums));
             });
-            columns
         };
+        let row_sums = planes * width;
         // What was begun belongs to the first row that is touched; row 0 waits for row 0 of the source.
-        let begun = std::mem::take(if rows.start == 0 { &mut self.first } else { &mut self.open });
+        let mut begun = std::mem::take(if rows.start == 0 { &mut self.first } else { &mut self.open });
         if touched.start == 0 && rows.start > 0 {
-            self.first = columns_of(0, std::mem::take(&mut self.first));
+            self.first.resize(row_sums, S::default());
+            add_rows(0, &mut self.first);
         }
-        let row_sums = planes * size.width();
         let mut sums = vec![S::default(); complete.len() * row_sums];
         sums.par_chunks_mut(row_sums).zip(complete.clone()).for_each(|(sums, row)| {
-            let begun = if row == touched.start { begun.clone() } else { Vec::new() };
-            self.level.along(planes, &columns_of(row, begun), sums);
+            if row == touched.start && !begun.is_empty() {
+                sums.copy_from_slice(&begun);
+            }
+            add_rows(row, sums);
         });
         let last = touched.end - 1;
         if last > 0 && !complete.contains(&last) {
-            self.open = columns_of(last, if last == touched.start { begun } else { Vec::new() });
+            if last > touched.start {
+                begun.clear();
+            }
+            begun.resize(row_sums, S::default());
+            add_rows(last, &mut begun);
+            self.open = begun;
         }
         (complete, sums)
-    }
-}
-
-impl Level {
-    /// A row of sums from the sums of the columns over it.
-    fn along<S: Sum>(&self, planes: usize, columns: &[S], sums: &mut [S]) {
-        let width = columns.len() / planes;
-        for (columns, sums) in columns.chunks(width).zip(sums.chunks_mut(self.size.width())) {
-            if self.x.is_pairs() {
-                add_pairs(columns, sums);
-                continue;
-            }
-            for (i, sum) in sums.iter_mut().enumerate() {
-                *sum = self.x.covered(i).fold(S::default(), |sum, x| sum + columns[x].times(self.x.weight(i, x)));
-            }
-        }
     }
 }

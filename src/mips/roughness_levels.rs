@@ -33,7 +33,7 @@ impl<'a> RoughnessLevels<'a> {
     /// stencil sums of a row.
     pub fn held_bytes(plan: &BakePlan, format: RoughnessFormat, rows: usize, threads: usize) -> u64 {
         let stencil_sums = threads * plan.size.width() * size_of::<[f32; 2]>();
-        Pyramid::<f64>::held_bytes(plan.size, PLANES, format.texel().bytes(), rows, threads) + stencil_sums as u64
+        Pyramid::<f64>::held_bytes(plan.size, PLANES, format.texel().bytes(), rows) + stencil_sums as u64
     }
 
     fn samples<T: LevelHeight<Sum: Into<f64>>>(&self, strip: &Band<'_, T>) -> Vec<f64> {

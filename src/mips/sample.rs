@@ -1,5 +1,6 @@
 //! What is summed up, and the loops that do it.
 
+use super::axis::{Axis, Covered};
 use std::ops::Add;
 
 /// A number that is summed up with weights.
@@ -41,35 +42,35 @@ macro_rules! sample {
 
 sample!(i32 => i64, i64 => i64, f32 => f64, f64 => f64);
 
-/// Adds a row of samples, each times `weight`, to sums.
-pub(super) fn add_weighted<T: Sample>(samples: &[T], weight: u64, sums: &mut [T::Sum]) {
-    match weight {
-        1 => add(samples, sums),
-        weight => add_times(samples, weight, sums),
+/// Adds to the sums of texels from texel `first` on what they cover of a row of finer ones, times `weight`.
+pub(super) fn add_along<T: Sample>(axis: Axis, first: usize, row: &[T], weight: u64, sums: &mut [T::Sum]) {
+    if axis.is_pairs() && weight == 1 {
+        add_pairs(&row[2 * first..], sums);
+    } else {
+        add_covered(axis, first, row, weight, sums);
     }
 }
 
 vectorised! {
-    fn add<T: Sample>(samples: &[T], sums: &mut [T::Sum]) {
-        for (sum, sample) in sums.iter_mut().zip(samples) {
-            *sum = *sum + sample.once();
+    fn add_pairs<T: Sample>(row: &[T], sums: &mut [T::Sum]) {
+        for (sum, [left, right]) in sums.iter_mut().zip(row.as_chunks::<2>().0) {
+            *sum = *sum + (left.once() + right.once());
         }
     }
 }
 
 vectorised! {
-    fn add_times<T: Sample>(samples: &[T], weight: u64, sums: &mut [T::Sum]) {
-        for (sum, sample) in sums.iter_mut().zip(samples) {
-            *sum = *sum + sample.times(weight);
-        }
-    }
-}
-
-vectorised! {
-    /// The sums of two neighbours each.
-    pub(super) fn add_pairs<S: Sum>(columns: &[S], sums: &mut [S]) {
-        for (sum, [left, right]) in sums.iter_mut().zip(columns.as_chunks::<2>().0) {
-            *sum = left.once() + right.once();
+    fn add_covered<T: Sample>(axis: Axis, first: usize, row: &[T], weight: u64, sums: &mut [T::Sum]) {
+        for (sum, Covered { finer, left, inner, right }) in sums.iter_mut().zip(axis.texels(first)) {
+            let along = match &row[finer] {
+                [] => T::Sum::default(),
+                [only] => only.times(left),
+                [first, between @ .., last] => {
+                    let whole = between.iter().fold(T::Sum::default(), |sum, sample| sum + sample.once());
+                    first.times(left) + whole.times(inner) + last.times(right)
+                }
+            };
+            *sum = *sum + along.times(weight);
         }
     }
 }

@@ -5,6 +5,8 @@ mod floats;
 mod integers;
 mod roughness;
 mod rows;
+#[cfg(all(feature = "cli", target_os = "linux"))]
+mod wide;
 
 use crate::support::{Format, Image, differences};
 use texbake::CodeMap;

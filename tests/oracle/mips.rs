@@ -178,15 +178,20 @@ fn float_sums(planes: &[Vec<f64>], sizes: &[Size]) -> Vec<Vec<Vec<f64>>> {
                 if j == 0 {
                     rows.rotate_left(1);
                 }
-                let column = |x: usize| {
-                    rows.iter().fold(0.0, |sum, (y, part)| {
-                        sum + plane[y * fine.width() + x] * weight(*part, coarse.height(), parts_y)
-                    })
-                };
                 for i in 0..coarse.width() {
-                    let columns = covered(fine.width(), coarse.width(), i);
+                    let columns: Vec<_> = covered(fine.width(), coarse.width(), i).collect();
+                    let along = |y: usize| {
+                        let texel = |x: usize| plane[y * fine.width() + x];
+                        let times = |value: f64, part: usize| value * weight(part, coarse.width(), parts_x);
+                        let [(first, left), between @ .., (last, right)] = &columns[..] else {
+                            return times(texel(columns[0].0), columns[0].1);
+                        };
+                        let whole = between.iter().fold(0.0, |sum, (x, _)| sum + texel(*x));
+                        times(texel(*first), *left) + times(whole, coarse.width()) + times(texel(*last), *right)
+                    };
                     sums.push(
-                        columns.fold(0.0, |sum, (x, part)| sum + column(x) * weight(part, coarse.width(), parts_x)),
+                        rows.iter()
+                            .fold(0.0, |sum, (y, part)| sum + along(*y) * weight(*part, coarse.height(), parts_y)),
                     );
                 }
             }
