@@ -203,17 +203,7 @@ impl Job {
         monitor: &Monitor,
         warnings: &mut Vec<String>,
     ) -> Result<Baked> {
-        if self.write.mips || options.roughness.is_some() {
-            let range = "left out where a map has neighbours: its halo is for the largest level";
-            return Err(Error::parameter("mips", "on", range));
-        }
-        if neighbours.edges() != options.edges {
-            return Err(Error::parameter(
-                "edge",
-                options.edges,
-                format!("{}, as for its neighbours", neighbours.edges()),
-            ));
-        }
+        neighbours.check(&self.read, options, &self.write)?;
         let size = {
             // As every file is opened: what its header takes is held by one that waits for memory.
             let _turn = monitor.turn();

@@ -84,8 +84,9 @@ impl Chosen {
             })
         });
         let options = settings.slope.bake(normal, parallax, roughness.transpose()?)?;
-        let neighbours = settings.tiles.around_found(folders, map, &options)?;
-        Ok(Some(Self { outputs, place, neighbours, options, read: settings.input.read(), write }))
+        let (read, neighbours) = (settings.input.read(), settings.tiles.around_found(folders, map, &options)?);
+        neighbours.iter().try_for_each(|neighbours| neighbours.check(&read, &options, &write))?;
+        Ok(Some(Self { outputs, place, neighbours, options, read, write }))
     }
 }
 
