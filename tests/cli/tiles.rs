@@ -94,11 +94,20 @@ fn a_wrong_name_stops_no_other_file() {
     let run = folder.run(&[&files[..], &["--neighbours", TEMPLATE, "--report", "r.json"]].concat()).ends(1);
     let reason = format!("dem/own_height.png: its name is not {TEMPLATE} with numbers for {{x}} and {{y}}");
     run.says("error: ", &[&reason]);
-    assert!(run.stdout.contains("1 of 1 files baked, 1 error; "), "{}", run.stdout);
+    assert!(run.stdout.contains("1 of 2 files baked, 1 failed; "), "{}", run.stdout);
     assert_is_middle(&folder, "out/tile_1_1_normal.png", 0);
     assert_eq!(folder.files("out"), ["tile_1_1_normal.png"]);
-    let errors = folder.json("r.json")["errors"].clone();
-    assert!(errors.as_array().unwrap().len() == 1 && errors[0].as_str().unwrap().starts_with(&reason), "{errors}");
+    let report = folder.json("r.json");
+    let [_, refused] = &report["files"].as_array().unwrap()[..] else { panic!("not two files: {report}") };
+    assert_eq!([&refused["input"], &refused["result"]], ["dem/own_height.png", "failed"]);
+    assert!(refused["error"].as_str().unwrap().starts_with(&reason), "{refused}");
+    assert_eq!([&report["errors"], &refused["options"]], [&json!([]), &json!(null)]);
+    let totals = ["files", "baked", "failed"].map(|count| report["totals"][count].clone());
+    assert_eq!(totals, [2, 1, 1].map(|count| json!(count)));
+    // What would be done says so too.
+    let run = folder.run(&[&files[..], &["--neighbours", TEMPLATE, "--dry-run"]].concat()).ends(1);
+    assert!(run.stdout.contains(&format!("fail dem/own_height.png: {reason}")), "{}", run.stdout);
+    assert!(run.stdout.ends_with("0 of 2 files would be baked, 1 fresh, 1 would fail\n"), "{}", run.stdout);
 }
 
 #[test]
@@ -108,8 +117,9 @@ fn a_tile_that_is_there_twice_stops_those_beside_it_alone() {
     tile(&folder, "dem/tile_00_0.png", [0, 0], 0);
     // A folder is no tile, whatever it is called.
     folder.file("dem/tile_02_2.png/notes.txt", "notes");
-    let run = folder.run(&bake("out", &["--neighbours", TEMPLATE])).ends(1);
+    let run = folder.run(&bake("out", &["--neighbours", TEMPLATE, "--report", "r.json"])).ends(1);
     run.says("error: ", &["dem/tile_0_0.png: it is the same tile as dem/tile_00_0.png: column 0, row 0; move one"]);
+    assert_eq!(folder.json("r.json")["totals"]["failed"], 4);
     let baked = |names: &[&str]| names.iter().map(|name| format!("tile_{name}_normal.png")).collect::<Vec<_>>();
     assert_eq!(folder.files("out"), baked(&["0_2", "1_1", "1_2", "2_0", "2_1", "2_2"]));
     assert_is_middle(&folder, "out/tile_1_1_normal.png", 0);
