@@ -10,7 +10,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 /// What makes a result of a job.
 type Work<J, R> = Arc<dyn Fn(J) -> R + Send + Sync>;
 
-/// Bytes of jobs that may be on their way, beside one.
+/// Bytes of jobs that may be on their way at a time; one job may be more.
 const WAITING_BYTES: usize = 16 << 20;
 
 /// Jobs on their way, the oldest first.
@@ -44,7 +44,7 @@ impl<J: Send + 'static, R: Send + 'static> InOrder<J, R> {
         self.most
     }
 
-    /// Lets some thread do a job.
+    /// Adds a job, for whichever thread is free.
     pub fn push(&mut self, job: J) {
         let task = Arc::new(Task { state: Mutex::new(State::Waiting(job)), done: Condvar::new() });
         self.tasks.push_back(task.clone());
@@ -61,7 +61,18 @@ impl<J: Send + 'static, R: Send + 'static> InOrder<J, R> {
     pub fn pop(&mut self) -> Option<R> {
         let task = self.tasks.pop_front()?;
         task.run(&*self.work);
-        Some(task.wait())
+        Some(task.wait().unwrap_or_else(|panic| resume_unwind(panic)))
+    }
+}
+
+impl<J, R> Drop for InOrder<J, R> {
+    /// Whoever gives up, as a file that failed, leaves no work behind, and no memory that others count as free.
+    fn drop(&mut self) {
+        for task in self.tasks.drain(..) {
+            if !task.withdraw() {
+                let _ = task.wait();
+            }
+        }
     }
 }
 
@@ -84,11 +95,22 @@ impl<J, R> Task<J, R> {
         }
     }
 
-    fn wait(&self) -> R {
+    /// Sees to it that nobody begins the job; false if somebody has.
+    fn withdraw(&self) -> bool {
+        let mut state = self.state();
+        let is_waiting = matches!(*state, State::Waiting(_));
+        if is_waiting {
+            *state = State::Begun;
+        }
+        is_waiting
+    }
+
+    /// Waits for the job, which somebody has begun.
+    fn wait(&self) -> std::thread::Result<R> {
         let mut state = self.state();
         loop {
             match std::mem::replace(&mut *state, State::Begun) {
-                State::Done(result) => return result.unwrap_or_else(|panic| resume_unwind(panic)),
+                State::Done(result) => return result,
                 other => *state = other,
             }
             state = self.done.wait(state).unwrap_or_else(PoisonError::into_inner);
@@ -99,6 +121,7 @@ impl<J, R> Task<J, R> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
 
     #[test]
     fn results_come_in_order() {
@@ -128,6 +151,21 @@ mod tests {
             let results: Vec<usize> = std::iter::from_fn(|| jobs.pop()).collect();
             assert_eq!(results, (1..11).collect::<Vec<usize>>());
         });
+    }
+
+    /// The first job holds the only thread until all others were pushed.
+    #[test]
+    fn what_is_given_up_is_not_done() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        let begun = Arc::new(AtomicUsize::new(0));
+        pool.install(|| {
+            let counter = begun.clone();
+            let mut jobs = InOrder::new(8, move |_: u32| counter.fetch_add(1, SeqCst));
+            (0..10).for_each(|number| jobs.push(number));
+            assert_eq!(jobs.pop(), Some(0));
+        });
+        // What the pool still has of them comes before this.
+        pool.install(|| assert_eq!(begun.load(SeqCst), 1));
     }
 
     #[test]

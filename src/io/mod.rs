@@ -42,6 +42,7 @@ mod seam;
 mod shrink;
 mod sink;
 mod srgb;
+mod sync_ahead;
 mod temporary;
 mod texture;
 mod tiff;

@@ -5,6 +5,7 @@
 //! gets its name. What is being written stands beside it as `.texbake-XXXXXX.tmp`; see `temporary` for who removes
 //! what a killed process left.
 
+use super::sync_ahead::SyncAhead;
 use super::temporary;
 use crate::error::{Error, Result};
 use std::fs::{self, File};
@@ -32,6 +33,7 @@ type Failure = Arc<OnceLock<(ErrorKind, String)>>;
 pub(crate) struct Output {
     file: File,
     failure: Failure,
+    ahead: SyncAhead,
 }
 
 impl Replacement {
@@ -76,13 +78,13 @@ impl Replacement {
     /// The file, to write.
     pub fn output(&self) -> Result<Output> {
         let file = self.temporary.as_file().try_clone().map_err(Error::io(&self.target))?;
-        Ok(Output { file, failure: self.failure.clone() })
+        Ok(Output { file, failure: self.failure.clone(), ahead: SyncAhead::default() })
     }
 
     /// As [`Replacement::output`], into another file: a device that is always full, say.
     #[cfg(test)]
     pub fn output_into(&self, file: File) -> Output {
-        Output { file, failure: self.failure.clone() }
+        Output { file, failure: self.failure.clone(), ahead: SyncAhead::default() }
     }
 
     /// Fails as the first write that failed, whatever became of its error since.
@@ -162,9 +164,20 @@ impl Output {
     }
 }
 
+impl Drop for Output {
+    /// What the disk refused meanwhile is the file's failure.
+    fn drop(&mut self) {
+        let result = self.ahead.finish();
+        let _ = self.remember(result);
+    }
+}
+
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let result = self.file.write(bytes);
+        if let Ok(written) = result {
+            self.ahead.wrote(written, &self.file);
+        }
         self.remember(result)
     }
 

@@ -46,6 +46,12 @@ impl Budget {
     }
 
     fn take(&self, bytes: u64, monitor: &Monitor) -> Result<Share<'_>> {
+        // Such a thread may be in the middle of a bake, of which it waits for a part: there it takes up the next one,
+        // which would wait here for the memory of the bake beneath it.
+        if rayon::current_thread_index().is_some() {
+            let range = "left unbounded where bakes run on the threads of rayon: std's wait for each other";
+            return Err(Error::parameter("memory", as_given(self.all), range));
+        }
         let needed = self.taken.saturating_add(bytes);
         if needed > self.all {
             let range = format!("at least {}M for this file", needed.div_ceil(MEBIBYTE));
@@ -71,7 +77,7 @@ impl<'a> Turn<'a> {
     /// files.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if there are never so many; [`Error::Cancelled`].
+    /// [`Error::Parameter`] if there are never so many, or on a thread of rayon; [`Error::Cancelled`].
     pub fn take(self, bytes: u64, monitor: &Monitor) -> Result<Option<Share<'a>>> {
         self.bounded.map(|(budget, _turn)| budget.take(bytes, monitor)).transpose()
     }

@@ -28,7 +28,8 @@ impl Monitor {
     /// Bakes that this monitor watches keep the process to `bytes` of memory, of which it has `taken` already: they share
     /// what is left, for what a source holds of its file, the bands on their way, a backend's buffers, and what a sink
     /// gathers. One that finds too little left waits for the end of another; one that needs more than there is fails with
-    /// [`Error::Parameter`] before it has any.
+    /// [`Error::Parameter`] before it has any. So does one on a thread of rayon, which waits for parts of its bake by
+    /// beginning others.
     ///
     /// A file is opened before it is known what it needs, one at a time. What stands before its rows is not counted then:
     /// tables of strips, tiles and blocks, colour profiles and other metadata. Coded rows are not held by a file that

@@ -122,24 +122,58 @@ fn quiet(mut command: Command) -> Child {
 }
 
 #[test]
-fn levels_are_within_the_bound() {
+fn every_kind_of_output_is_within_the_bound() {
     let folder = Folder::new();
-    // Each level of the odd size is summed from the largest one.
-    for [width, height] in [[16384, 1024], [16383, 1023]] {
+    let levels: &[&str] = &["-o", "n.ktx2", "--mips", "--roughness", "r.ktx2"];
+    for ([width, height], outputs) in [
+        ([16384, 1024], levels),
+        // Each level of the odd size is summed from the largest one.
+        ([16383, 1023], levels),
+        ([16384, 512], &["-o", "n.dds", "--mips", "--block-compression", "bc5", "--channels", "xy"]),
+        ([4096, 2048], &["-o", "n.exr"]),
+        // Sixteen rows would be too long for a block.
+        ([60_000, 300], &["-o", "n.exr"]),
+        ([60_000, 300], &["-o", "n.tif", "--bits", "16"]),
+        ([60_000, 300], &["-o", "n.png", "--compression", "small"]),
+    ] {
         let file = std::fs::File::create(folder.path("h.raw")).unwrap();
         file.set_len(2 * width * height).unwrap();
         let layout = format!("{width}x{height}:u16le");
         let bake = |memory: &str| {
-            let mut command = folder.command(&["normal", "h.raw", "--raw", &layout, "-o", "n.ktx2", "--mips"]);
-            command.args(["--roughness", "r.ktx2", "--backend", "cpu", "--memory", memory]);
+            let mut command = folder.command(&["normal", "h.raw", "--raw", &layout, "--backend", "cpu"]);
+            command.args(outputs).args(["--memory", memory]);
             command
         };
         let least = mebibytes(&super::support::Run::from(bake("1M").output().unwrap()).ends(2).stderr, "be above ");
         let tight = super::support::Run::from(bake(&format!("{}M", least + 2)).output().unwrap()).ends(1);
         let memory = least + 2 + mebibytes(&tight.stderr, ": it must be at least ");
         let peak = peak_bytes(&mut quiet(bake(&format!("{memory}M"))));
-        assert!(peak <= memory * MEBIBYTE, "{layout}: --memory {memory}M: {peak} bytes");
+        assert!(peak <= memory * MEBIBYTE, "{layout}, {outputs:?}: --memory {memory}M: {peak} bytes");
     }
+}
+
+/// Each tile holds the tiles beside it, which are decoded whole.
+#[test]
+fn tiles_are_within_the_bound() {
+    let folder = Folder::new();
+    for (x, y) in (0..9).map(|tile| (tile % 3, tile / 3)) {
+        folder.file(&format!("tex/tile_{x}_{y}.png"), interlaced(1500, 1100));
+    }
+    let bake = |out, memory| {
+        let mut command = bake(&folder, out, memory);
+        command.args(["--neighbours", "tile_{x}_{y}.png"]);
+        command
+    };
+    let least = super::support::Run::from(bake("none", Some(1)).output().unwrap()).ends(2);
+    let least = mebibytes(&least.stderr, "it must be above ");
+    let tight = super::support::Run::from(bake("tight", Some(least + 2)).output().unwrap()).ends(1);
+    let needed = tight.stderr.lines().filter(|line| line.contains(" failed tex/"));
+    let memory = 2 + needed.map(|line| mebibytes(line, ": it must be at least ")).max().unwrap();
+    let unbounded = peak_bytes(&mut quiet(bake("unbounded", None)));
+    assert!(unbounded > (memory + memory / 4) * MEBIBYTE, "unbounded, they take {unbounded} bytes: no more");
+    let peak = peak_bytes(&mut quiet(bake("bounded", Some(memory))));
+    assert!(peak <= memory * MEBIBYTE, "--memory {memory}M: {peak} bytes");
+    assert!(outputs(&folder, "bounded") == outputs(&folder, "unbounded"), "--memory {memory}M changes bytes");
 }
 
 #[test]

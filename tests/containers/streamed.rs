@@ -48,13 +48,13 @@ fn every_kind_and_edge() {
         map_u16(13, 139, |_, _| random.bits() as u16),
         map_f32(13, 139, |_, _| random.below(1000) as f32 / 999.0),
     ];
-    let mut maps = maps.iter().cycle();
-    let mut columns = EDGES.into_iter().flat_map(|edge| [edge; 3]).cycle();
+    // Every type of heights meets every pair of edges.
+    let columns_and_maps = EDGES.into_iter().flat_map(|x| maps.iter().map(move |map| (x, map)));
+    let mut columns_and_maps = columns_and_maps.flat_map(|pair| [pair; 3]).cycle();
     for kind in KINDS {
         for container in CONTAINERS {
-            // All pairs take their turns.
             for y in EDGES {
-                let (map, x) = (maps.next().unwrap(), columns.next().unwrap());
+                let (x, map) = columns_and_maps.next().unwrap();
                 assert_streams(&Baker::reference(), &folder, kind, container, map, Edges { x, y });
             }
         }

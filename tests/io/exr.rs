@@ -204,6 +204,10 @@ fn decode(path: &Path) -> Vec<(String, FlatSamples)> {
     channels.map(|channel| (channel.name.to_string(), channel.sample_data)).collect()
 }
 
+fn compression(path: &Path) -> Compression {
+    ::exr::meta::MetaData::read_from_file(path, true).unwrap().headers[0].compression
+}
+
 #[test]
 fn normals_are_written_as_red_green_and_blue() {
     let folder = Folder::new();
@@ -216,6 +220,15 @@ fn normals_are_written_as_red_green_and_blue() {
     let expected = [("B", component(2)), ("G", component(1)), ("R", component(0))];
     let expected = expected.map(|(name, values)| (name.to_string(), FlatSamples::F32(values)));
     assert_eq!(decode(&path), expected);
+
+    // Sixteen rows of 12000 texels would be 2.3 MB: each has a block of its own.
+    let codes: Vec<f32> = (0..12_000 * 5 * 3).map(|_| noise.next() as f32).collect();
+    write(&path, 12_000, 5, float(Depth::Float32, Channels::Xyz), CodesRef::F32(&codes)).unwrap();
+    let component = |i: usize| codes.iter().skip(i).step_by(3).copied().collect::<Vec<f32>>();
+    let expected = [("B", component(2)), ("G", component(1)), ("R", component(0))];
+    let expected = expected.map(|(name, values)| (name.to_string(), FlatSamples::F32(values)));
+    assert_eq!(compression(&path), Compression::ZIP1);
+    assert!(decode(&path) == expected);
 
     let codes: Vec<f16> = [0.5, -0.25, 1.0, 0.0].map(f16::from_f32).to_vec();
     write(&path, 1, 2, float(Depth::Float16, Channels::Xy), CodesRef::F16(&codes)).unwrap();

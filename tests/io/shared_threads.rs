@@ -1,6 +1,7 @@
 //! Callers that bake on the very threads that encoders share (rayon's): all of them wait for their files at once.
 
 use super::support::Folder;
+use rayon::prelude::*;
 use std::path::Path;
 use texbake::io::{BlockCompression, WriteOptions, create_normals_with, open_heights};
 use texbake::stream::Monitor;
@@ -40,5 +41,11 @@ fn all_shared_threads_bake_at_once() {
             bake(&input, &path, format, &write) == expected
         });
         assert!(found.iter().all(|is_equal| *is_equal), "{extension}: {found:?}");
+        // A thread that waits for a part of its bake begins the next one meanwhile.
+        let found = (0..4 * rayon::current_num_threads()).into_par_iter().map(|file| {
+            let path = folder.path(&format!("file_{file}.{extension}"));
+            bake(&input, &path, format, &write) == expected
+        });
+        assert!(found.all(|is_equal| is_equal), "{extension}");
     }
 }

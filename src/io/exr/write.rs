@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The most bytes of a block of 16 lines. Wider maps have blocks of one, since several are on their way at a time.
-const BLOCK_BYTES: usize = 8 << 20;
+const BLOCK_BYTES: usize = 2 << 20;
 
 /// Gathers rows into blocks, which several threads compress.
 struct ExrEncoder {
@@ -176,9 +176,10 @@ impl ExrEncoder {
 
 impl RowEncoder for ExrEncoder {
     /// Blocks, the one that is gathered and those on their way: as they came, or channel by channel, in the order that
-    /// is deflated, and deflated.
+    /// is deflated, and deflated; and one that `exr` keeps on each thread.
     fn held_bytes(&self, _: usize) -> u64 {
-        ((4 * (self.compressing.most() + 1) + 1) * self.layout.block_bytes()) as u64
+        let blocks = 4 * (self.compressing.most() + 1) + 1 + rayon::current_num_threads();
+        (blocks * self.layout.block_bytes()) as u64
     }
 
     /// Blocks of several rows are compressed one after the other.

@@ -15,7 +15,6 @@
 //! Signed blocks are the unsigned ones of the codes + 128: the order of codes and the steps between them are the same,
 //! and the two ends move back.
 
-use crate::io::in_order::InOrder;
 use block_compression::encode::compress_rgba8;
 use block_compression::{BC7Settings, CompressionVariant};
 
@@ -43,8 +42,8 @@ pub struct BlockRow {
 
 const RGBA_BYTES: usize = 4;
 
-/// Bytes of a row of texels that one thread compresses at a time: those of 64 blocks.
-const PIECE: usize = 64 * Blocks::SIDE * RGBA_BYTES;
+/// Bytes of a row of texels that one thread compresses at a time: those of 256 blocks.
+const PIECE: usize = 256 * Blocks::SIDE * RGBA_BYTES;
 
 impl Blocks {
     /// Texels along each side of a block.
@@ -61,33 +60,17 @@ impl Blocks {
         Self { flip: 0x80, ..self }
     }
 
-    /// The blocks of a row whose texels have come; several threads make them.
-    pub fn compress(self, row: BlockRow) -> Vec<u8> {
-        let BlockRow { mut texels, rows, .. } = row;
-        let stride = texels.len() / Self::SIDE;
-        // Rows beyond the border repeat its last one.
-        for beyond in rows..Self::SIDE {
-            texels.copy_within((rows - 1) * stride..rows * stride, beyond * stride);
-        }
-        let mut bytes = Vec::new();
-        let mut pieces = InOrder::new(PIECE * Self::SIDE, move |piece: Vec<u8>| self.compress_piece(&piece));
-        for first in (0..stride).step_by(PIECE) {
-            let piece = first..(first + PIECE).min(stride);
-            let rows: Vec<&[u8]> = texels.chunks_exact(stride).map(|row| &row[piece.clone()]).collect();
-            pieces.push(rows.concat());
-            pieces.pop_surplus().into_iter().for_each(|blocks| bytes.extend(blocks));
-        }
-        while let Some(blocks) = pieces.pop() {
-            bytes.extend(blocks);
-        }
-        bytes
+    /// Bytes of the blocks of so many bytes of texels.
+    pub fn bytes(self, texel_bytes: usize) -> usize {
+        let width = texel_bytes / Self::SIDE / RGBA_BYTES;
+        self.variant.blocks_byte_size(width as u32, Self::SIDE as u32)
     }
 
     /// The blocks of four rows of texels.
-    fn compress_piece(self, texels: &[u8]) -> Vec<u8> {
+    pub fn compress(self, texels: &[u8]) -> Vec<u8> {
         let stride = texels.len() / Self::SIDE;
         let (width, height) = ((stride / RGBA_BYTES) as u32, Self::SIDE as u32);
-        let mut bytes = vec![0; self.variant.blocks_byte_size(width, height)];
+        let mut bytes = vec![0; self.bytes(texels.len())];
         compress_rgba8(self.variant, texels, &mut bytes, width, height, stride as u32);
         // The two ends of each component's range.
         bytes.chunks_exact_mut(8).for_each(|component| component[..2].iter_mut().for_each(|end| *end ^= self.flip));
@@ -99,26 +82,45 @@ impl Blocks {
         let stride = into.texels.len() / Self::SIDE;
         let channels = codes.len() / into.width;
         let texels = &mut into.texels[row % Self::SIDE * stride..][..stride];
-        for (texel, codes) in texels.chunks_exact_mut(4).zip(codes.chunks_exact(channels)) {
+        for (texel, codes) in texels.chunks_exact_mut(RGBA_BYTES).zip(codes.chunks_exact(channels)) {
             texel.iter_mut().zip(codes).for_each(|(texel, code)| *texel = code ^ self.flip);
         }
         // Columns beyond the border repeat its last one.
-        let last = 4 * (into.width - 1);
-        (last + 4..stride).step_by(4).for_each(|beyond| texels.copy_within(last..last + 4, beyond));
+        let last = RGBA_BYTES * (into.width - 1);
+        let beyond = (last + RGBA_BYTES..stride).step_by(RGBA_BYTES);
+        beyond.for_each(|beyond| texels.copy_within(last..last + RGBA_BYTES, beyond));
         into.rows_left -= 1;
         into.rows_left == 0
     }
 }
 
 impl BlockRow {
+    /// Bytes of the texels that are compressed by themselves, at most: those of 256 blocks.
+    pub const PIECE_BYTES: usize = Blocks::SIDE * PIECE;
+
     /// Bytes of the texels of a row of blocks, of a map of this width.
     pub fn texel_bytes(width: usize) -> usize {
-        4 * width.next_multiple_of(Blocks::SIDE) * Blocks::SIDE
+        RGBA_BYTES * width.next_multiple_of(Blocks::SIDE) * Blocks::SIDE
     }
 
     /// Its place among the rows of blocks.
     pub fn index(&self) -> usize {
         self.index
+    }
+
+    /// Its texels, which have come, in pieces that are compressed by themselves: four rows of each.
+    pub fn pieces(self) -> impl Iterator<Item = Vec<u8>> {
+        let Self { mut texels, rows, .. } = self;
+        let stride = texels.len() / Blocks::SIDE;
+        // Rows beyond the border repeat its last one.
+        for beyond in rows..Blocks::SIDE {
+            texels.copy_within((rows - 1) * stride..rows * stride, beyond * stride);
+        }
+        (0..stride).step_by(PIECE).map(move |first| {
+            let piece = first..(first + PIECE).min(stride);
+            let rows: Vec<&[u8]> = texels.chunks_exact(stride).map(|row| &row[piece.clone()]).collect();
+            rows.concat()
+        })
     }
 
     /// Whether row `row` of the map is in it.
@@ -130,7 +132,7 @@ impl BlockRow {
     pub fn of(row: usize, width: usize, height: usize) -> Self {
         let index = row / Blocks::SIDE;
         let rows = Blocks::SIDE.min(height - index * Blocks::SIDE);
-        let texels = [0, 0, 0, u8::MAX].repeat(Self::texel_bytes(width) / 4);
+        let texels = [0, 0, 0, u8::MAX].repeat(Self::texel_bytes(width) / RGBA_BYTES);
         Self { index, texels, width, rows, rows_left: rows }
     }
 }

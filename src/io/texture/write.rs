@@ -4,21 +4,21 @@
 //! Texels are written as they come; of blocks, a row waits for its four rows of texels, and the topmost one until row 0
 //! is there.
 
+use super::block_writer::{BlockWriter, WaitingRows};
 use super::blocks::BlockRow;
+use super::file::TextureFile;
 use super::format::{BlockCompression, TextureFormat};
 use super::levels::{Level, levels};
-use super::texels::{little_endian, with_alpha};
 use super::{dds, ktx2};
 use crate::error::{Error, Result};
-use crate::io::replace::{Output, Replacement};
+use crate::io::replace::Replacement;
 use crate::io::sink::{ExpectedRows, FileSink, RowEncoder};
 use crate::io::write::WriteOptions;
-use crate::map::{Codes, CodesRef, Size, TexelFormat};
+use crate::map::{CodesRef, Size, TexelFormat};
 use crate::stream::LevelSink;
-use std::io::{Seek, SeekFrom, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 /// Which file holds the levels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,26 +27,21 @@ pub(in crate::io) enum Container {
     Dds,
 }
 
-/// Bytes of texels that are converted at a time, about.
-const PIECE: usize = 1 << 20;
-
-/// The file that all levels go to.
-struct TextureFile {
-    path: PathBuf,
-    output: Mutex<Output>,
-    codes: TexelFormat,
-    format: TextureFormat,
+/// One level, and its rows of blocks that wait for texels.
+struct LevelRows {
+    level: Level,
+    waiting: WaitingRows,
 }
 
-/// One level, and the rows of blocks that wait for texels: at most the topmost one and the one that comes.
-struct LevelRows {
-    file: Arc<TextureFile>,
-    level: Level,
-    waiting: Vec<BlockRow>,
+/// What brings rows to their places.
+enum RowWriter {
+    Texels(Arc<TextureFile>),
+    Blocks(BlockWriter),
 }
 
 struct TextureEncoder {
     largest: LevelRows,
+    writer: RowWriter,
     /// Rows of the smaller levels that have not come.
     rows_left: Arc<AtomicUsize>,
     held_bytes: usize,
@@ -54,6 +49,7 @@ struct TextureEncoder {
 
 struct SmallerLevels {
     levels: Vec<(ExpectedRows, LevelRows)>,
+    writer: RowWriter,
     rows_left: Arc<AtomicUsize>,
 }
 
@@ -84,76 +80,50 @@ pub(in crate::io) fn create(
     let file = Arc::new(TextureFile { path: path.into(), output, codes, format });
     file.write_at(0, &header)?;
 
-    let rows = |level: &Level| LevelRows { file: file.clone(), level: *level, waiting: Vec::new() };
+    let writer = || match file.format.blocks {
+        Some(blocks) => RowWriter::Blocks(BlockWriter::new(file.clone(), blocks)),
+        None => RowWriter::Texels(file.clone()),
+    };
+    let rows = |level: &Level| LevelRows { level: *level, waiting: WaitingRows::new() };
     let expected = |level: &Level| ExpectedRows::new(level.width, level.height, codes);
     let largest = rows(&levels[0]);
     let smaller = levels[1..].iter().map(|level| (expected(level), rows(level))).collect();
     let rows_left = Arc::new(AtomicUsize::new(levels[1..].iter().map(|level| level.height).sum()));
-    let smaller = SmallerLevels { levels: smaller, rows_left: rows_left.clone() };
+    let smaller = SmallerLevels { levels: smaller, writer: writer(), rows_left: rows_left.clone() };
     let smaller = options.mips.then(|| Box::new(smaller) as Box<dyn LevelSink>);
     let held_bytes = held_bytes(&format, &levels);
-    Ok((FileSink::boxed(TextureEncoder { largest, rows_left, held_bytes }, replacement, size, codes), smaller))
+    let encoder = TextureEncoder { largest, writer: writer(), rows_left, held_bytes };
+    Ok((FileSink::boxed(encoder, replacement, size, codes), smaller))
 }
 
-/// The most bytes that wait for others, or are being made: texels of the largest level and of one of the others at the
-/// same time; of blocks, the topmost row of each level and the one that comes, and what two of them become.
+/// The most bytes that wait for others, or are being made, of the largest level and of the others at the same time:
+/// texels; of blocks, the topmost row of each level and the one that comes, and what is being compressed.
 fn held_bytes(format: &TextureFormat, levels: &[Level]) -> usize {
-    let row_bytes = levels[0].row_bytes;
     match format.blocks {
-        None => 2 * PIECE.max(row_bytes),
-        Some(_) => 2 * (row_bytes + levels.iter().map(|level| BlockRow::texel_bytes(level.width)).sum::<usize>()),
+        None => 2 * TextureFile::PIECE.max(levels[0].row_bytes),
+        Some(_) => {
+            let rows: usize = levels.iter().map(|level| BlockRow::texel_bytes(level.width)).sum();
+            2 * (rows + BlockWriter::held_bytes(levels[0].width))
+        }
     }
 }
 
-impl TextureFile {
-    fn write_at(&self, offset: u64, bytes: &[u8]) -> Result<()> {
-        let mut output = self.output.lock().unwrap_or_else(PoisonError::into_inner);
-        let written = output.seek(SeekFrom::Start(offset)).and_then(|_| output.write_all(bytes));
-        written.map_err(Error::io(&self.path))
-    }
-}
-
-impl LevelRows {
-    /// Writes whole rows from row `first` on.
-    fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
-        match rows {
-            CodesRef::U8(codes) if self.file.format.blocks.is_some() => self.write_blocks(first, codes),
-            _ => self.write_texels(first, rows),
+impl RowWriter {
+    /// Writes whole rows of a level from row `first` on.
+    fn write(&mut self, into: &mut LevelRows, first: usize, rows: CodesRef<'_>) -> Result<()> {
+        match (self, rows) {
+            (Self::Texels(file), _) => file.write_texels(&into.level, first, rows),
+            (Self::Blocks(writer), CodesRef::U8(codes)) => writer.write(&into.level, &mut into.waiting, first, codes),
+            (Self::Blocks(_), _) => unreachable!("blocks are of 8-bit codes, by the format"),
         }
     }
 
-    fn write_texels(&self, first: usize, rows: CodesRef<'_>) -> Result<()> {
-        let Level { width, row_bytes, offset, .. } = self.level;
-        let codes = self.file.codes;
-        let row_codes = codes.row_codes(width);
-        let piece_rows = (PIECE / row_bytes).max(1);
-        let count = rows.len() / row_codes;
-        (0..count).step_by(piece_rows).try_for_each(|row| {
-            let piece = rows.slice(row * row_codes..(row + piece_rows).min(count) * row_codes);
-            let texels = with_alpha(piece, codes);
-            let bytes = little_endian(texels.as_ref().map_or(piece, Codes::as_ref));
-            self.file.write_at(offset + (first + row) as u64 * row_bytes as u64, &bytes)
-        })
-    }
-
-    fn write_blocks(&mut self, first: usize, codes: &[u8]) -> Result<()> {
-        let Some(blocks) = self.file.format.blocks else { return Ok(()) };
-        let Level { width, height, row_bytes, offset, .. } = self.level;
-        for (row, codes) in (first..).zip(codes.chunks_exact(self.file.codes.row_codes(width))) {
-            let place = self.waiting.iter().position(|waiting| waiting.holds(row));
-            let mut into = match place {
-                Some(place) => self.waiting.swap_remove(place),
-                None => BlockRow::of(row, width, height),
-            };
-            match blocks.fill(&mut into, row, codes) {
-                false => self.waiting.push(into),
-                true => {
-                    let place = offset + into.index() as u64 * row_bytes as u64;
-                    self.file.write_at(place, &blocks.compress(into))?;
-                }
-            }
+    /// Waits until all is written.
+    fn finish(&mut self) -> Result<()> {
+        match self {
+            Self::Texels(_) => Ok(()),
+            Self::Blocks(writer) => writer.finish(),
         }
-        Ok(())
     }
 }
 
@@ -167,10 +137,11 @@ impl RowEncoder for TextureEncoder {
     }
 
     fn write(&mut self, first: usize, rows: CodesRef<'_>) -> Result<()> {
-        self.largest.write(first, rows)
+        self.writer.write(&mut self.largest, first, rows)
     }
 
-    fn finish(self: Box<Self>) -> Result<()> {
+    fn finish(mut self: Box<Self>) -> Result<()> {
+        self.writer.finish()?;
         match self.rows_left.load(Relaxed) {
             0 => Ok(()),
             rows => {
@@ -187,8 +158,12 @@ impl LevelSink for SmallerLevels {
             return Err(Error::parameter("level", level, format!("from 1 to {count}")));
         };
         let rows_taken = expected.check(first, rows, true)?;
-        into.write(first, rows)?;
+        self.writer.write(into, first, rows)?;
         expected.advance(first, rows_taken);
+        // The file is complete once none are left: then all are written.
+        if self.rows_left.load(Relaxed) == rows_taken {
+            self.writer.finish()?;
+        }
         self.rows_left.fetch_sub(rows_taken, Relaxed);
         Ok(())
     }
