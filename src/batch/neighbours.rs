@@ -39,8 +39,8 @@ pub struct Neighbours {
 }
 
 impl TileFolders {
-    /// What lies around the tile `input`, in its own folder. Tiles beside each other share `overlap` texels, which are
-    /// those of the map only once.
+    /// What lies around the tile `input`, in its own folder. Tiles beside each other share `overlap` texels of their files,
+    /// which are those of the map only once.
     ///
     /// # Errors
     /// [`Error::File`] if `input` has not such a name, or two files are this tile, or one that would be read beside it;
