@@ -80,7 +80,8 @@ impl Search {
     }
 
     /// The same, and tiles of larger maps: `template_of` says what they are called, for the path of each file below the
-    /// folder that was searched. Such a name needs no suffix, and loses none that its template has not.
+    /// folder that was searched. Such a name needs no suffix, and keeps its end unless the template
+    /// ends in a suffix.
     pub fn find_with_tiles(&self, paths: &[PathBuf], template_of: TemplateOf<'_>) -> (Vec<Found>, Vec<Error>) {
         let (mut found, mut errors) = (Vec::new(), Vec::new());
         for path in paths {

@@ -1,4 +1,4 @@
-//! Files baked side by side.
+//! One height map to bake.
 
 use super::fresh::Written;
 use super::heights::HeightWatch;
@@ -6,18 +6,16 @@ use super::neighbours::Neighbours;
 use super::normals::NormalInput;
 use super::outcome::Outcome;
 use super::role::{Role, check_same_size};
-use super::targets::{self, Files, Refusal};
+use super::targets::Files;
 use crate::baker::{Baked, Baker};
 use crate::error::{Error, Result};
 use crate::exact::Scale;
-use crate::io::{Cropped, ReadOptions, SeamWarnings, WriteOptions, create_codes};
-use crate::map::{Edge, Edges, Maps, Size, TexelFormat};
+use crate::io::{ReadOptions, WriteOptions, create_codes};
+use crate::map::{Maps, Size, TexelFormat};
 use crate::ops::bake::BakeOptions;
-use crate::stream::{HeightRows, MapOut, Monitor, RowsOut};
-use std::io::ErrorKind;
+use crate::stream::{MapOut, Monitor};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::{Arc, OnceLock, PoisonError};
+use std::sync::Arc;
 
 /// One height map to bake.
 #[derive(Clone)]
@@ -32,109 +30,13 @@ pub struct Job {
     pub neighbours: Option<Neighbours>,
     /// How the input is read, and by which factor it is reduced.
     pub read: ReadOptions,
-    /// What is baked. A scale in texels is one of texels of the file, whatever it is reduced by. Filter and edges do not matter to a parallax map with a given normal map.
+    /// What is baked. A scale in texels is one of texels of the file, whatever it is reduced by. Filter and edges do not
+    /// matter to a parallax map with a given normal map.
     pub options: BakeOptions,
     /// How the outputs are written.
     pub write: WriteOptions,
     /// Where it runs.
     pub baker: Arc<Baker>,
-}
-
-/// What happens while jobs run.
-#[derive(Debug)]
-pub enum Event<'a> {
-    /// A job's input was opened.
-    Opened {
-        /// Its place in the list of jobs.
-        job: usize,
-        /// Size of its map.
-        size: Size,
-    },
-    /// A job has ended, or was refused; not sent for jobs that an interrupt kept from their turn.
-    Ended {
-        /// Its place in the list of jobs.
-        job: usize,
-        /// How.
-        outcome: &'a Outcome,
-    },
-}
-
-/// Runs `jobs`, `at_once` of them at a time, in their order; one that fails does not stop the others.
-///
-/// A job with an output that would overwrite an input fails unopened, and so do all jobs that share one output.
-///
-/// Each is a stream of its own: its file is read, baked and written at the same time. `watch` is called from many
-/// threads. The outcomes come back in the order of the jobs.
-pub fn run(jobs: &[Job], at_once: usize, monitor: &Monitor, watch: &(dyn Fn(Event<'_>) + Sync)) -> Vec<Outcome> {
-    let refusals = targets::refusals(&Job::all_files(jobs)).into_iter();
-    let queue = jobs.iter().zip(refusals).map(|(job, refusal)| Queued { refusal, ..Queued::new(job) });
-    run_queue(&queue.collect::<Vec<_>>(), at_once, monitor, watch)
-}
-
-/// A job that waits for its turn.
-pub(super) struct Queued<'a> {
-    pub job: &'a Job,
-    /// Why it must not run.
-    pub refusal: Option<Refusal>,
-    /// What it wrote, if somebody wants to know.
-    pub written: Option<Written>,
-    /// Whether its input was there when the run began.
-    pub was_there: bool,
-}
-
-impl<'a> Queued<'a> {
-    pub fn new(job: &'a Job) -> Self {
-        Self { job, refusal: None, written: None, was_there: job.input.exists() }
-    }
-
-    fn run(&self, monitor: &Monitor, opened: &dyn Fn(Size)) -> Outcome {
-        let outcome = self.job.run(self.written.as_ref(), monitor, opened);
-        if self.was_there { say_if_it_went(&self.job.input, outcome) } else { outcome }
-    }
-}
-
-/// Runs jobs as [`run`] does, whose places are those in the queue.
-pub(super) fn run_queue(
-    queue: &[Queued<'_>],
-    at_once: usize,
-    monitor: &Monitor,
-    watch: &(dyn Fn(Event<'_>) + Sync),
-) -> Vec<Outcome> {
-    let next = AtomicUsize::new(0);
-    let refused = |refusal: &Refusal| OnceLock::from(Outcome::unopened(refusal.error()));
-    let outcomes: Vec<OnceLock<Outcome>> =
-        queue.iter().map(|queued| queued.refusal.as_ref().map_or_else(OnceLock::new, refused)).collect();
-    let work = || {
-        while !monitor.is_cancelled() {
-            let index = next.fetch_add(1, Relaxed);
-            let Some(queued) = queue.get(index) else { break };
-            let run = || queued.run(monitor, &|size| watch(Event::Opened { job: index, size }));
-            watch(Event::Ended { job: index, outcome: outcomes[index].get_or_init(run) });
-        }
-    };
-    std::thread::scope(|scope| {
-        for _ in 1..at_once.min(queue.len()) {
-            scope.spawn(work);
-        }
-        work();
-    });
-    outcomes
-        .into_iter()
-        .map(|outcome| outcome.into_inner().unwrap_or_else(|| Outcome::unopened(Error::Cancelled)))
-        .collect()
-}
-
-/// Of an input that was there when the run began the path is written rightly.
-fn say_if_it_went(input: &Path, outcome: Outcome) -> Outcome {
-    let is_missing = matches!(
-        &outcome.result,
-        Err(Error::Io { path, source }) if path == input && source.kind() == ErrorKind::NotFound
-    );
-    if !is_missing {
-        return outcome;
-    }
-    let went = Error::file(input, "it went after it was found", "put it back, or run again without it");
-    Outcome { result: Err(went), ..outcome }
 }
 
 impl Job {
@@ -162,21 +64,19 @@ impl Job {
     }
 
     /// `written` is told what becomes of the outputs.
-    fn run(&self, written: Option<&Written>, monitor: &Monitor, opened: &dyn Fn(Size)) -> Outcome {
+    pub(super) fn run(&self, written: Option<&Written>, monitor: &Monitor, opened: &dyn Fn(Size)) -> Outcome {
         let create = |size| self.create(size, written);
-        Outcome::of(&self.files(), |warnings| match &self.normals {
-            None => self.bake(&create, monitor, opened, warnings),
-            Some(normals) => self.bake_with(normals, &create, monitor, opened, warnings),
+        Outcome::of(&self.files(), |warnings| {
+            let run = Run { create: &create, monitor, opened, warnings };
+            match &self.normals {
+                None => self.bake(run),
+                Some(normals) => self.bake_with(normals, run),
+            }
         })
     }
 
-    fn bake(
-        &self,
-        create: Create<'_>,
-        monitor: &Monitor,
-        opened: &dyn Fn(Size),
-        warnings: &mut Vec<String>,
-    ) -> Result<Baked> {
+    fn bake(&self, run: Run<'_>) -> Result<Baked> {
+        let Run { create, monitor, opened, warnings } = run;
         let heights = HeightWatch::new(&self.input, &self.read);
         let open = || {
             let rows = heights.open(self.options.parallax.is_some())?;
@@ -186,64 +86,18 @@ impl Job {
         let options = BakeOptions { scale: self.scale()?, ..self.options };
         let baked = match &self.neighbours {
             None => self.baker.bake_rows(&open, create, &options, monitor),
-            Some(neighbours) => self.bake_tile(neighbours, &open, create, &options, monitor, warnings),
+            Some(neighbours) => {
+                let run = Run { create, monitor, opened, warnings };
+                self.bake_tile(neighbours, &open, &options, run)
+            }
         };
         warnings.extend(heights.warnings(baked.is_ok()));
         warnings.extend(baked.as_ref().ok().and_then(inexact_scale));
         baked
     }
 
-    /// Bakes a tile with its halo, and writes the tile.
-    fn bake_tile(
-        &self,
-        neighbours: &Neighbours,
-        open: &dyn Fn() -> Result<HeightRows>,
-        create: Create<'_>,
-        options: &BakeOptions,
-        monitor: &Monitor,
-        warnings: &mut Vec<String>,
-    ) -> Result<Baked> {
-        if self.write.mips || options.roughness.is_some() {
-            let range = "left out where a map has neighbours: its halo is for the largest level";
-            return Err(Error::parameter("mips", "on", range));
-        }
-        if neighbours.edges() != options.edges {
-            return Err(Error::parameter(
-                "edge",
-                options.edges,
-                format!("{}, as for its neighbours", neighbours.edges()),
-            ));
-        }
-        let size = {
-            // As every file is opened: what its header takes is held by one that waits for memory.
-            let _turn = monitor.turn();
-            open()?.size()
-        };
-        let whole = Size::new(size.width() + 2, size.height() + 2)?;
-        let options =
-            BakeOptions { scale: options.scale.over(size, whole)?, edges: Edges::both(Edge::Clamp), ..*options };
-        let told = SeamWarnings::default();
-        let open = || Ok(Box::new(neighbours.around(&self.input, open()?, &self.read, monitor, &told)?) as HeightRows);
-        let cropped = |(map, format): (MapOut, _)| (Box::new(Cropped::new(map.rows, size, format)) as RowsOut).into();
-        let create_cropped = |_| {
-            let Maps { normal, parallax, .. } = create(size)?;
-            let normal = normal.zip(options.normal.map(|format| format.texel())).map(cropped);
-            let parallax = parallax.zip(options.parallax.map(|format| format.texel())).map(cropped);
-            Ok(Maps { normal, parallax, roughness: None })
-        };
-        let baked = self.baker.bake_rows(&open, &create_cropped, &options, monitor)?;
-        warnings.append(&mut told.lock().unwrap_or_else(PoisonError::into_inner));
-        Ok(Baked { size, ..baked })
-    }
-
-    fn bake_with(
-        &self,
-        normals: &NormalInput,
-        create: Create<'_>,
-        monitor: &Monitor,
-        opened: &dyn Fn(Size),
-        warnings: &mut Vec<String>,
-    ) -> Result<Baked> {
+    fn bake_with(&self, normals: &NormalInput, run: Run<'_>) -> Result<Baked> {
+        let Run { create, monitor, opened, warnings } = run;
         let (Maps { normal: None, parallax: Some(_), roughness: None }, Some(format), None) =
             (&self.outputs, self.options.parallax, self.options.normal)
         else {
@@ -302,8 +156,15 @@ impl Job {
     }
 }
 
-/// Makes the sinks of a job's outputs.
-type Create<'a> = &'a dyn Fn(Size) -> Result<Maps<MapOut>>;
+/// What a bake needs to run, and whom it tells what.
+pub(super) struct Run<'a> {
+    /// Makes the sinks of the outputs.
+    pub create: &'a dyn Fn(Size) -> Result<Maps<MapOut>>,
+    pub monitor: &'a Monitor,
+    /// Is told the size of the map.
+    pub opened: &'a dyn Fn(Size),
+    pub warnings: &'a mut Vec<String>,
+}
 
 /// Makes the folders above a file.
 pub(super) fn create_folder_of(file: &Path) -> Result<()> {

@@ -37,10 +37,12 @@ mod normals;
 mod offsets;
 mod outcome;
 mod place;
+mod queue;
 mod report;
 mod role;
 mod tangents;
 mod targets;
+mod tile;
 mod tile_template;
 
 pub use blend::{BlendJob, BlendOutcome, BlendReport, FormatReport, LayerFacts, LayerReport, UsedWeights};
@@ -48,7 +50,7 @@ pub use discovery::{Found, Search, TemplateOf};
 pub use fresh::{Change, FreshPlan, Freshness, KERNEL_VERSION, Reason};
 #[cfg(feature = "cli")]
 pub use glob::FileGlob;
-pub use job::{Event, Job, run};
+pub use job::Job;
 pub use mask::MaskInput;
 pub use naming::{MapKind, NameTemplate, OUTPUT_EXTENSIONS};
 pub use neighbours::{Neighbours, TileFolders};
@@ -57,6 +59,7 @@ pub use offsets::{Decoding, ParallaxNumbers, ParallaxSidecar, WelshNumbers, desc
 pub use outcome::Outcome;
 pub(crate) use place::place;
 pub use place::with_real_folder;
+pub use queue::{Event, run};
 pub use report::{
     FileReport, FileResult, JsonFile, Options, Outputs, Report, RunReport, SizeReport, Totals, UsedScale,
 };

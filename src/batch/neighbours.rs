@@ -2,7 +2,7 @@
 
 use super::tile_template::{TilePlace, TileTemplate};
 use crate::error::{Error, Result};
-use crate::io::{Halo, HaloRows, Reach, ReadOptions, SeamWarnings, TileRow};
+use crate::io::{Halo, HaloRows, Reach, ReadOptions, SeamWarnings, TileRow, WriteOptions};
 use crate::map::{Edge, Edges};
 use crate::ops::bake::{BakeOptions, Filter};
 use crate::stream::{HeightRows, Monitor};
@@ -17,6 +17,10 @@ pub struct TileFolders(HashMap<(PathBuf, TileTemplate), Tiles>);
 #[derive(Debug)]
 struct Tiles {
     files: BTreeMap<TilePlace, PathBuf>,
+    /// Other files that are the same tile.
+    doubled: BTreeMap<TilePlace, PathBuf>,
+    /// The digits of numbers with zeros in front, in the order in which names have them.
+    digits: [usize; 2],
     /// The first and the last tile of each column of tiles.
     columns: HashMap<i64, [TilePlace; 2]>,
 }
@@ -35,12 +39,12 @@ pub struct Neighbours {
 }
 
 impl TileFolders {
-    /// What lies around the tile `input`, in its own folder. Tiles beside each other share `overlap` texels, which are
-    /// those of the map only once.
+    /// What lies around the tile `input`, in its own folder. Tiles beside each other share `overlap` texels of their files,
+    /// which are those of the map only once.
     ///
     /// # Errors
-    /// [`Error::File`] if `input` has not such a name, or two files are one tile; [`Error::Io`] if the folder cannot be
-    /// listed.
+    /// [`Error::File`] if `input` has not such a name, or two files are this tile, or one that would be read beside it;
+    /// [`Error::Io`] if the folder cannot be listed.
     pub fn around(
         &mut self,
         input: &Path,
@@ -62,8 +66,10 @@ impl TileFolders {
         // The central stencil looks at no corner.
         let looks_at_corners = options.filter != Filter::Central;
         let halo = sides.around(place, looks_at_corners);
-        let name = |place| template.name(place, input.file_name()?.to_str()?);
-        let missing = sides.tiles.holes_beside(place).filter_map(name).map(|name| key.0.join(name)).collect();
+        let read = halo.tiles().into_iter().filter_map(|tile| template.place_of(tile));
+        [place].into_iter().chain(read).try_for_each(|place| sides.tiles.check_single(place))?;
+        let path = |place| key.0.join(template.name(place, sides.tiles.digits));
+        let missing = sides.tiles.holes_beside(place).map(path).collect();
         Ok(Neighbours { halo, missing })
     }
 }
@@ -71,21 +77,32 @@ impl TileFolders {
 impl Tiles {
     fn in_folder(folder: &Path, template: &TileTemplate) -> Result<Self> {
         let listed = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-        let mut files = BTreeMap::new();
+        let (mut files, mut doubled, mut digits) = (BTreeMap::new(), BTreeMap::new(), [0; 2]);
         for entry in std::fs::read_dir(listed).map_err(Error::io(listed))? {
-            let name = entry.map_err(Error::io(listed))?.file_name();
-            let path = folder.join(name);
-            let Some(place) = template.place_of(&path) else { continue };
-            if let Some(other) = files.insert(place, path.clone()) {
-                let reason = format!("it is the same tile as {}: column {}, row {}", other.display(), place.x, place.y);
-                return Err(Error::file(path, reason, "move one of them away"));
+            let entry = entry.map_err(Error::io(listed))?;
+            let path = folder.join(entry.file_name());
+            let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
+            let Some(place) = template.place_of(&path).filter(|_| !is_folder) else { continue };
+            let padded = template.padded_digits(&path);
+            digits = [digits[0].max(padded[0]), digits[1].max(padded[1])];
+            if let Some(other) = files.insert(place, path) {
+                doubled.insert(place, other);
             }
         }
         let mut columns = HashMap::new();
         for place in files.keys() {
             columns.entry(place.x).or_insert([*place; 2])[1] = *place;
         }
-        Ok(Self { files, columns })
+        Ok(Self { files, doubled, digits, columns })
+    }
+
+    /// Fails if two files are the tile at a place.
+    fn check_single(&self, place: TilePlace) -> Result<()> {
+        let Some((one, other)) = self.files.get(&place).zip(self.doubled.get(&place)) else { return Ok(()) };
+        // Folders are listed in no order.
+        let (first, second) = (one.min(other), one.max(other));
+        let reason = format!("it is the same tile as {}: column {}, row {}", first.display(), place.x, place.y);
+        Err(Error::file(second, reason, "move one of them away"))
     }
 
     /// The first and the last tile of a row of tiles.
@@ -184,9 +201,24 @@ impl Neighbours {
         &self.halo
     }
 
-    /// The edge modes for which they were found.
-    pub(super) fn edges(&self) -> Edges {
-        self.halo.edges
+    /// Fails if the tile cannot be baked so beside those around it.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for mip levels and a roughness map; for other edge modes than those for which the tiles were
+    /// found; and if `read` reduces tiles that share a part of a reduced texel.
+    pub fn check(&self, read: &ReadOptions, options: &BakeOptions, write: &WriteOptions) -> Result<()> {
+        let left_out = "left out where a map has neighbours: their texels are for the largest level";
+        if write.mips {
+            return Err(Error::parameter("mips", "on", left_out));
+        }
+        if options.roughness.is_some() {
+            return Err(Error::parameter("roughness", "on", left_out));
+        }
+        if options.edges != self.halo.edges {
+            let range = format!("{}, as for its neighbours", self.halo.edges);
+            return Err(Error::parameter("edge", options.edges, range));
+        }
+        self.halo.clone().reduced(read.shrink).map(drop)
     }
 
     /// What lies beyond each side and corner where it is another tile, by the names of sides.

@@ -27,11 +27,11 @@ pub struct Report {
     pub settings: Option<String>,
     /// Sums over the files.
     pub totals: Totals,
-    /// Why folders could not be searched, files not be baked as their settings say, or nothing be baked at all.
+    /// Why folders could not be searched, or nothing be baked at all.
     pub errors: Vec<String>,
     /// What looks wrong with more than one file: tiles that are missing.
     pub warnings: Vec<String>,
-    /// The files, in the order in which they were found.
+    /// The files, in the order in which they were found; then those that were refused.
     pub files: Vec<FileReport>,
     /// Height maps that get no map, as the settings say.
     pub left_out: Vec<String>,
@@ -90,8 +90,8 @@ pub struct FileReport {
     pub normals: Option<String>,
     /// The files of the maps that were asked for.
     pub outputs: Outputs,
-    /// What was asked for, by the names of the command line.
-    pub options: Options,
+    /// What was asked for, by the names of the command line; null if the file was refused.
+    pub options: Option<Options>,
     /// Type of the heights that were baked: `u8`, `u16`, `f32`; reduced ones are `u16` or `f32`.
     pub depth: Option<String>,
     /// The scale that was used, in texels of the map as it was baked.
@@ -131,7 +131,7 @@ pub struct RunReport {
     pub backend: Option<&'static str>,
     /// The device and how it was used.
     pub adapter: Option<String>,
-    /// Why this backend was chosen.
+    /// Why this backend was chosen; empty if none was.
     pub reason: String,
     /// Why another backend failed before.
     pub fallback: Option<String>,
@@ -238,6 +238,13 @@ impl Report {
             files: jobs.iter().zip(outcomes).map(file).collect(),
             ..Self::default()
         }
+    }
+
+    /// Adds a file that was refused: it cannot be baked as its settings say.
+    pub fn add_refused(&mut self, input: &Path, reason: &str) {
+        self.totals.files += 1;
+        self.totals.failed += 1;
+        self.files.push(FileReport::refused(input, reason));
     }
 }
 
@@ -390,6 +397,32 @@ impl RunReport {
 }
 
 impl FileReport {
+    fn refused(input: &Path, reason: &str) -> Self {
+        Self {
+            input: input.into(),
+            normals: None,
+            outputs: Outputs { normal: None, parallax: None, roughness: None },
+            options: None,
+            depth: None,
+            scale: None,
+            parallax: None,
+            stale: None,
+            run: RunReport {
+                result: FileResult::Failed,
+                error: Some(reason.into()),
+                warnings: Vec::new(),
+                backend: None,
+                adapter: None,
+                reason: String::new(),
+                fallback: None,
+                size: Some(SizeReport { width: None, height: None }),
+                milliseconds: None,
+                bytes_in: 0,
+                bytes_out: 0,
+            },
+        }
+    }
+
     fn new(job: &Job, outcome: &Outcome, iterations: NonZeroU32) -> Self {
         let baked = outcome.result.as_ref().ok();
         let ratio =
@@ -404,7 +437,7 @@ impl FileReport {
                 parallax: text(&job.outputs.parallax),
                 roughness: text(&job.outputs.roughness),
             },
-            options: Options::new(job, iterations),
+            options: Some(Options::new(job, iterations)),
             depth: baked.map(|baked| baked.height_type.to_string()),
             scale: scale.map(|s| UsedScale { x: ratio(s.x, s.q), y: ratio(s.y, s.q), exact: s.exact }),
             parallax: ParallaxNumbers::of(job, outcome, iterations),

@@ -87,16 +87,25 @@ impl TileTemplate {
         (rest == behind).then_some([first, second])
     }
 
-    /// What the tile at a place is called, if numbers there have zeros in front as those of the tile `like` have.
-    pub(super) fn name(&self, TilePlace { y, x }: TilePlace, like: &str) -> Option<String> {
-        let written = |number: i64, like: &str| match like.trim_start_matches('-').starts_with('0') {
-            true => format!("{number:0width$}", width = like.len()),
-            false => number.to_string(),
+    /// The digits of those numbers in the name of the tile `path` that have zeros in front, in the order of the name; 0
+    /// for others.
+    pub(super) fn padded_digits(&self, path: &Path) -> [usize; 2] {
+        let numbers = path.file_name().and_then(|name| self.numbers(name.to_str()?)).unwrap_or_default();
+        numbers.map(|number| number.trim_start_matches('-')).map(|digits| match digits.starts_with('0') {
+            true => digits.len(),
+            false => 0,
+        })
+    }
+
+    /// What the tile at a place is called, if its numbers have at least so many digits.
+    pub(super) fn name(&self, TilePlace { y, x }: TilePlace, digits: [usize; 2]) -> String {
+        let written = |number: i64, digits: usize| {
+            let sign = if number < 0 { "-" } else { "" };
+            format!("{sign}{:0digits$}", number.unsigned_abs())
         };
-        let [like_first, like_second] = self.numbers(like)?;
         let [first, second] = if self.y_first { [y, x] } else { [x, y] };
         let [before, between, behind] = &self.texts;
-        Some(format!("{before}{}{between}{}{behind}", written(first, like_first), written(second, like_second)))
+        format!("{before}{}{between}{}{behind}", written(first, digits[0]), written(second, digits[1]))
     }
 }
 

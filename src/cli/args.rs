@@ -186,10 +186,11 @@ impl ParallaxArguments {
 #[command(after_help = "\
 Folders are searched for files such as wall_height.png, wall_disp_2k.exr or
 Wall_Displacement.tif; files are taken as they are. In --out,
-tex/brick/wall_height_2k.png becomes brick/wall_normal_2k.png. With --neighbours
-files that are called like its tiles are found too, whatever they end in:
-dem/tile_0_0.png becomes tile_0_0_normal.png. Height maps with other names are
-maps of their own; a file that is named must be a tile.
+tex/brick/wall_height_2k.png becomes brick/wall_normal_2k.png.
+
+With --neighbours every file that has the name of a tile is found too, with any
+extension: dem/tile_0_0.png becomes tile_0_0_normal.png. Height maps with other
+names are maps of their own; a file that is named must be a tile.
 
 Each setting comes from the command line, else from the last [[override]] in
 texbake.toml that has it and whose glob matches the file's path below the

@@ -4,19 +4,19 @@ use super::args::{BakeArguments, CheckPlan};
 use super::check_plan::PlanCheck;
 use super::config::Config;
 use super::exit::{Exit, Failure};
-use super::jobs::{Jobs, blame, missing_tiles, settings_in};
+use super::jobs::{Jobs, Refused, blame, missing_tiles, settings_in};
 use super::print::{file_table, plan_table, put, say, summary};
 use super::progress::{Progress, Verbosity};
 use super::settings::Place;
 use super::stopped_by_interrupts;
 use super::watch::watch;
 use std::cell::{OnceCell, RefCell};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
-use texbake::batch::{Found, FreshPlan, Job, JsonFile, Report, Search};
+use texbake::batch::{Found, FreshPlan, Job, JsonFile, Report, Search, TileTemplate};
 use texbake::stream::Monitor;
 use texbake::{Baker, Error};
 
@@ -39,6 +39,8 @@ pub struct Round {
     pub exit: Exit,
     /// What was read and written.
     pub jobs: Vec<Job>,
+    /// What tiles are called, by the settings file.
+    pub templates: Vec<TileTemplate>,
     /// One line about it, if a file was worked on.
     pub summary: Option<String>,
 }
@@ -63,7 +65,7 @@ impl Session<'_> {
         match (&work.check, self.arguments.check_plan) {
             (Some(check), Some(CheckPlan::Only)) => {
                 let exit = check.run(self.arguments.reporting.quiet, self.monitor()?)?;
-                Ok(Round { exit, jobs: work.jobs, summary: None })
+                Ok(Round { exit, templates: work.templates(), jobs: work.jobs, summary: None })
             }
             _ => {
                 let report = work.report_file(self)?;
@@ -86,7 +88,9 @@ struct Work {
     jobs: Vec<Job>,
     /// Height maps that get no map.
     left_out: Vec<PathBuf>,
-    /// What could not be searched, and height maps that cannot be baked as their settings say.
+    /// Those that cannot be baked as their settings say.
+    refused: Vec<Refused>,
+    /// What could not be searched.
     errors: Vec<String>,
     /// What looks wrong with more than one height map.
     warnings: Vec<String>,
@@ -102,7 +106,7 @@ impl Work {
         let in_settings = |path: &Path| settings_in(config.as_ref(), path).settings.tiles.neighbours;
         let template_of = |path: &Path| given.clone().or_else(|| in_settings(path));
         let (found, unreadable) = search.find_with_tiles(&arguments.paths, &template_of);
-        let mut errors: Vec<String> = unreadable.iter().map(ToString::to_string).collect();
+        let errors: Vec<String> = unreadable.iter().map(ToString::to_string).collect();
         if found.is_empty() && errors.is_empty() {
             return Err(nothing_found(arguments, &search));
         }
@@ -110,13 +114,10 @@ impl Work {
             describe(config, &found);
         }
         let Jobs { jobs, left_out, refused } = session.jobs(config.as_ref(), &found)?;
-        for error in refused {
-            // What is wrong with a folder is wrong with each of its tiles.
-            if !errors.contains(&error) {
-                errors.push(error);
-            }
-        }
-        errors.iter().for_each(|error| say(format_args!("error: {error}")));
+        // What is wrong with a tile is wrong for each one beside it.
+        let mut told = HashSet::new();
+        let reasons = refused.iter().map(|refused| &refused.reason).filter(|reason| told.insert(*reason));
+        errors.iter().chain(reasons).for_each(|error| say(format_args!("error: {error}")));
         let warnings = missing_tiles(&jobs);
         if !reporting.quiet {
             warnings.iter().for_each(|text| say(format_args!("warning: {text}")));
@@ -124,13 +125,17 @@ impl Work {
         let check = arguments.check_plan.map(|_| PlanCheck::new(config.as_ref(), &found, &jobs)).transpose()?;
         // What bounds memory is known once devices are open.
         session.monitor()?;
-        Ok(Self { jobs, left_out, errors, warnings, check, config })
+        Ok(Self { jobs, left_out, refused, errors, warnings, check, config })
     }
 
     /// What the report goes to, if it was asked for.
     fn report_file(&self, session: &Session<'_>) -> Result<Option<JsonFile>, Error> {
         let create = |path: &PathBuf| JsonFile::create("report", path, &Job::all_files(&self.jobs), self.settings());
         session.arguments.reporting.report.as_ref().map(create).transpose()
+    }
+
+    fn templates(&self) -> Vec<TileTemplate> {
+        self.config.iter().flat_map(Config::templates).cloned().collect()
     }
 
     /// The settings file.
@@ -140,7 +145,7 @@ impl Work {
 
     fn bake(self, session: &Session<'_>, report_file: Option<JsonFile>, is_first: bool) -> Result<Round, Failure> {
         let (arguments, reporting) = (session.arguments, &session.arguments.reporting);
-        let Self { jobs, errors, .. } = &self;
+        let Self { jobs, refused, errors, .. } = &self;
         let monitor = session.monitor()?;
         let start = Instant::now();
         let plan = FreshPlan::new(jobs, &arguments.out, arguments.force && is_first, monitor);
@@ -157,17 +162,18 @@ impl Work {
         if !reporting.quiet {
             plan.warnings().iter().for_each(|text| say(format_args!("warning: {text}")));
         }
-        let report = Report {
+        let mut report = Report {
             left_out: self.left_out.iter().map(|path| path.display().to_string()).collect(),
             warnings: self.warnings.clone(),
             ..Report::new(jobs, &outcomes, time, errors, self.settings(), arguments.iterations)
         };
+        refused.iter().for_each(|refused| report.add_refused(&refused.input, &refused.reason));
         let summary = summary(&report, jobs, &outcomes);
         let is_told = arguments.dry_run && !monitor.is_cancelled();
         if !reporting.quiet && is_first {
             match is_told {
-                true => put(plan_table(jobs, &outcomes)),
-                false => put(format_args!("{}\n{summary}", file_table(jobs, &outcomes, &report.left_out))),
+                true => put(plan_table(jobs, &outcomes, refused)),
+                false => put(format_args!("{}\n{summary}", file_table(jobs, &outcomes, &report.left_out, refused))),
             }
         }
         if let Some(file) = report_file {
@@ -183,7 +189,7 @@ impl Work {
             _ => exit_without(errors),
         };
         let is_idle = report.totals.fresh == report.totals.files;
-        Ok(Round { exit, jobs: self.jobs, summary: (!is_idle).then_some(summary) })
+        Ok(Round { exit, templates: self.templates(), jobs: self.jobs, summary: (!is_idle).then_some(summary) })
     }
 }
 

@@ -7,7 +7,7 @@ use clap::{Args, Command, FromArgMatches};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use texbake::batch::FileGlob;
+use texbake::batch::{FileGlob, TileTemplate};
 use texbake::plan::{Prediction, predictions};
 use texbake::{Error, Result};
 use toml::Spanned;
@@ -69,6 +69,12 @@ impl Config {
         let matching = self.overrides.iter().rev().filter(|candidate| candidate.glob.is_match(path));
         let overridden = matching.fold(PerFile::default(), |stronger, weaker| stronger.or(&weaker.settings));
         overridden.or(&self.defaults)
+    }
+
+    /// What tiles are called, by any of the settings.
+    pub fn templates(&self) -> impl Iterator<Item = &TileTemplate> {
+        let all = self.overrides.iter().map(|candidate| &candidate.settings).chain([&self.defaults]);
+        all.filter_map(|each| each.settings.tiles.neighbours.as_ref())
     }
 
     /// The globs that match none of `paths`.

@@ -19,8 +19,15 @@ pub struct Jobs {
     pub jobs: Vec<Job>,
     /// Those that get no map.
     pub left_out: Vec<PathBuf>,
-    /// Why others cannot be baked as their settings say, which stops no other.
-    pub refused: Vec<String>,
+    /// Those that cannot be baked as their settings say, which stops no other.
+    pub refused: Vec<Refused>,
+}
+
+/// A height map that cannot be baked as its settings say.
+pub struct Refused {
+    pub input: PathBuf,
+    /// Why, with the name of the file that is wrong.
+    pub reason: String,
 }
 
 /// What a settings file says about the file at `path` below the folder that was searched.
@@ -84,8 +91,9 @@ impl Chosen {
             })
         });
         let options = settings.slope.bake(normal, parallax, roughness.transpose()?)?;
-        let neighbours = settings.tiles.around_found(folders, map, &options)?;
-        Ok(Some(Self { outputs, place, neighbours, options, read: settings.input.read(), write }))
+        let (read, neighbours) = (settings.input.read(), settings.tiles.around_found(folders, map, &options)?);
+        neighbours.iter().try_for_each(|neighbours| neighbours.check(&read, &options, &write))?;
+        Ok(Some(Self { outputs, place, neighbours, options, read, write }))
     }
 }
 
@@ -121,7 +129,7 @@ impl Session<'_> {
                     return Err(blame(error, config.filter(|_| choose(&arguments.each).is_ok())));
                 }
                 Err(error) => {
-                    all.refused.push(error.to_string());
+                    all.refused.push(Refused { input: map.path.clone(), reason: error.to_string() });
                     continue;
                 }
             };

@@ -1,5 +1,6 @@
 //! Lines and tables.
 
+use super::jobs::Refused;
 use comfy_table::{CellAlignment, Table, presets};
 use std::cmp::Reverse;
 use std::io::{ErrorKind, Write};
@@ -249,25 +250,29 @@ fn how_it_ran<T>(ran: &Ran, size: Size, baker: &Baker, outcome: &Outcome<T>) -> 
 }
 
 /// The files of a folder; of many only those that were not baked, and the slowest.
-pub fn file_table(jobs: &[Job], outcomes: &[Outcome], left_out: &[String]) -> String {
-    let files = || jobs.iter().zip(outcomes);
-    if jobs.len() + left_out.len() <= TABLE_ROWS {
-        return rows_of(files(), left_out);
+pub fn file_table(jobs: &[Job], outcomes: &[Outcome], left_out: &[String], refused: &[Refused]) -> String {
+    let (files, all) = (|| jobs.iter().zip(outcomes), jobs.len() + refused.len());
+    if all + left_out.len() <= TABLE_ROWS {
+        return rows_of(files(), left_out, refused);
     }
     let worked_on = files().filter(|(_, outcome)| FileResult::of(outcome) != FileResult::Fresh);
     let (mut baked, unbaked): (Vec<_>, Vec<_>) = worked_on.partition(|(_, outcome)| outcome.result.is_ok());
     baked.sort_by_key(|(_, outcome)| Reverse(outcome.time));
     baked.truncate(SLOWEST);
-    let what = match (unbaked.len(), baked.len()) {
-        (0, 0) => return format!("of {} files all fresh", jobs.len()),
+    let what = match (unbaked.len() + refused.len(), baked.len()) {
+        (0, 0) => return format!("of {all} files all fresh"),
         (0, slowest) => format!("the {slowest} slowest"),
         (unbaked, 0) => format!("{unbaked} not baked"),
         (unbaked, slowest) => format!("{unbaked} not baked, and the {slowest} slowest"),
     };
-    format!("of {} files {what}:\n{}", jobs.len(), rows_of(unbaked.into_iter().chain(baked), &[]))
+    format!("of {all} files {what}:\n{}", rows_of(unbaked.into_iter().chain(baked), &[], refused))
 }
 
-fn rows_of<'a>(files: impl Iterator<Item = (&'a Job, &'a Outcome)>, left_out: &[String]) -> String {
+fn rows_of<'a>(
+    files: impl Iterator<Item = (&'a Job, &'a Outcome)>,
+    left_out: &[String],
+    refused: &[Refused],
+) -> String {
     let mut table = plain_table(&["file", "size", "depth", "maps", "ms", "result"], &[4]);
     for (job, outcome) in files {
         let (size, depth) = match &outcome.result {
@@ -287,6 +292,9 @@ fn rows_of<'a>(files: impl Iterator<Item = (&'a Job, &'a Outcome)>, left_out: &[
         let maps: Vec<_> = maps.iter().filter(|(_, path)| path.is_some()).map(|(map, _)| *map).collect();
         let maps = maps.join(",");
         table.add_row([job.input.display().to_string(), size, depth, maps, time, result]);
+    }
+    for Refused { input, .. } in refused {
+        table.add_row([&*input.to_string_lossy(), "", "", "", "", "failed"]);
     }
     for file in left_out {
         table.add_row([file, "", "", "none", "", "left out"]);
@@ -336,7 +344,7 @@ pub fn summary(report: &Report, jobs: &[Job], outcomes: &[Outcome]) -> String {
 }
 
 /// What would become of each file of a folder, and why; these are the outcomes of a dry run.
-pub fn plan_table(jobs: &[Job], outcomes: &[Outcome]) -> String {
+pub fn plan_table(jobs: &[Job], outcomes: &[Outcome], refused: &[Refused]) -> String {
     let line = |(job, outcome): (&Job, &Outcome)| {
         let files = format!("{} -> {}", job.input.display(), outputs(job));
         match (job.failure(outcome), &outcome.freshness) {
@@ -346,13 +354,15 @@ pub fn plan_table(jobs: &[Job], outcomes: &[Outcome]) -> String {
         }
     };
     let count = |result| outcomes.iter().filter(|outcome| FileResult::of(outcome) == result).count();
-    let mut summary = format!("{} of {} files would be baked", count(FileResult::NotBegun), outcomes.len());
-    for (count, what) in [(count(FileResult::Fresh), "fresh"), (count(FileResult::Failed), "would fail")] {
+    let (failed, all) = (count(FileResult::Failed) + refused.len(), outcomes.len() + refused.len());
+    let mut summary = format!("{} of {all} files would be baked", count(FileResult::NotBegun));
+    for (count, what) in [(count(FileResult::Fresh), "fresh"), (failed, "would fail")] {
         if count > 0 {
             summary += &format!(", {count} {what}");
         }
     }
-    jobs.iter().zip(outcomes).map(line).chain([summary]).collect::<Vec<_>>().join("\n")
+    let refused = refused.iter().map(|Refused { input, reason }| format!("fail {}: {reason}", input.display()));
+    jobs.iter().zip(outcomes).map(line).chain(refused).chain([summary]).collect::<Vec<_>>().join("\n")
 }
 
 /// What could run bakes.

@@ -81,7 +81,7 @@ fn keep_to_cores(count: usize) -> rustix::io::Result<()> {
     use std::hash::{BuildHasher, RandomState};
     let allowed = sched_getaffinity(None)?;
     let mut cores: Vec<usize> = (0..CpuSet::MAX_CPU).filter(|core| allowed.is_set(*core)).collect();
-    // Its keys are the chance.
+    // Its keys are random.
     let chance = RandomState::new();
     cores.sort_by_cached_key(|core| chance.hash_one(core));
     let mut chosen = CpuSet::new();

@@ -27,6 +27,7 @@ pub fn bake_one(
     resources: &Resources,
     reporting: &Reporting,
 ) -> Result<Exit, Failure> {
+    job.neighbours.iter().try_for_each(|neighbours| neighbours.check(&job.read, &job.options, &job.write))?;
     let jobs = [job];
     let mut files = Job::all_files(&jobs);
     let create = |path| {

@@ -1,7 +1,7 @@
 //! `texbake bake --watch`: bakes again what was saved.
 
 use super::args::BakeArguments;
-use super::bake::Session;
+use super::bake::{Round, Session};
 use super::config::SETTINGS_NAME;
 use super::exit::{Exit, Failure};
 use super::print::{put, say};
@@ -11,7 +11,7 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
-use texbake::batch::{Job, with_real_folder};
+use texbake::batch::{Job, TileTemplate, with_real_folder};
 use texbake::io::INPUT_EXTENSIONS;
 use texbake::stream::Monitor;
 
@@ -28,7 +28,7 @@ pub fn watch(session: &Session<'_>) -> Result<Exit, Failure> {
                 if !is_first && !is_quiet {
                     round.summary.iter().for_each(put);
                 }
-                known.take(&round.jobs);
+                known.take(round);
                 is_first = false;
             }
             Err(failure @ Failure::Usage(_)) if !has_begun => return Err(failure),
@@ -107,6 +107,10 @@ fn existing_folder_above(path: &Path) -> Option<&Path> {
 /// The files of which word may come.
 struct Known {
     settings: Option<PathBuf>,
+    /// What tiles are called, by the command line.
+    template: Option<TileTemplate>,
+    /// And by the settings.
+    templates: Vec<TileTemplate>,
     inputs: HashSet<PathBuf>,
     outputs: HashSet<PathBuf>,
 }
@@ -114,12 +118,14 @@ struct Known {
 impl Known {
     fn new(arguments: &BakeArguments) -> Self {
         let settings = arguments.config.as_deref().map(with_real_folder);
-        Self { settings, inputs: HashSet::new(), outputs: HashSet::new() }
+        let template = arguments.each.settings.tiles.neighbours.clone();
+        Self { settings, template, templates: Vec::new(), inputs: HashSet::new(), outputs: HashSet::new() }
     }
 
-    /// Takes the files of a round's jobs.
-    fn take(&mut self, jobs: &[Job]) {
-        let files = Job::all_files(jobs);
+    /// Takes the files of a round's jobs, and what others would be called.
+    fn take(&mut self, round: Round) {
+        let files = Job::all_files(&round.jobs);
+        self.templates = round.templates;
         self.inputs = files.iter().flat_map(|files| &files.inputs).map(|path| with_real_folder(path)).collect();
         self.outputs = files.iter().flat_map(|files| &files.outputs).map(|path| with_real_folder(path)).collect();
     }
@@ -146,6 +152,7 @@ impl Known {
         let is_settings = name == SETTINGS_NAME || self.settings.as_ref() == Some(&place);
         // What is gone without having had an extension may have been a folder; a file without one may be a log of this.
         let is_folder = path.is_dir() || (extension.is_none() && !path.exists());
-        is_image || is_settings || is_folder || self.inputs.contains(&place)
+        let is_tile = self.templates.iter().chain(&self.template).any(|template| template.fits(path));
+        is_image || is_tile || is_settings || is_folder || self.inputs.contains(&place)
     }
 }

@@ -1,8 +1,10 @@
 //! What lies around a tile of a larger map.
 
 use super::seam::Seam;
+use crate::error::{Error, Result};
 use crate::map::{Edge, Edges};
 use std::fmt;
+use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
 /// Where the texels beyond one side of a tile are.
@@ -56,6 +58,23 @@ impl Halo {
         tiles
     }
 
+    /// The same around a tile that is reduced by a factor.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if tiles share a part of a reduced texel.
+    pub fn reduced(mut self, by: NonZeroU32) -> Result<Self> {
+        let reaches = self.rows.iter_mut().flat_map(|TileRow { tile, ends: [left, right] }| [left, tile, right]);
+        for overlap in reaches.filter_map(Reach::overlap_mut) {
+            let whole = *overlap / by.get() as usize;
+            if whole * by.get() as usize != *overlap {
+                let range = format!("a multiple of shrink, which is {by}: reduced tiles share whole texels");
+                return Err(Error::parameter("overlap", *overlap, range));
+            }
+            *overlap = whole;
+        }
+        Ok(self)
+    }
+
     /// How many texels it shares with the tiles beside it, if there are any.
     pub(super) fn overlap(&self) -> Option<usize> {
         self.sides().into_iter().find_map(|(_, reach)| reach.overlap())
@@ -79,6 +98,13 @@ impl Reach {
         }
     }
 
+    fn overlap_mut(&mut self) -> Option<&mut usize> {
+        match self {
+            Self::Beside { overlap, .. } => Some(overlap),
+            Self::Own | Self::Far(_) => None,
+        }
+    }
+
     /// The row or column of `count` in which the texels are; those before a tile or behind it.
     pub(super) fn place(&self, is_before: bool, count: usize, edge: Edge) -> usize {
         let overlap = self.overlap().unwrap_or(0);
@@ -90,7 +116,8 @@ impl Reach {
         }
     }
 
-    /// The row or column of the tile beside it that is its own first or last one, or would be if they shared one.
+    /// The row or column of the tile beside it that should be the same as the tile's own first or last one. Of tiles that
+    /// share none it is the one that would be the same if they shared one.
     pub(super) fn shared(&self, is_before: bool, count: usize) -> Option<usize> {
         let overlap = self.overlap()?.max(1);
         Some(if is_before { count - overlap } else { overlap - 1 })

@@ -1,15 +1,16 @@
 //! A tile of a larger map with the texels around it: one more row above and below, one more column on either side.
 
+use super::ReadOptions;
 use super::halo::{Halo, TileRow};
-use super::input::Watch;
 use super::samples::{Samples, copy, len, part, part_mut};
-use super::seam::{Seam, warnings};
+use super::seam::{RowSeam, warnings};
+use super::tile_files::TileFiles;
 use super::wide_rows::WideRows;
-use super::{ReadOptions, open_heights};
 use crate::error::{Error, Result};
-use crate::map::{HeightType, HeightsMut, Size};
+use crate::map::{HeightType, Heights, HeightsMut, Size};
 use crate::stream::{HeightRows, RowSource, Stop};
-use std::path::{Path, PathBuf};
+use std::num::NonZeroU32;
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// What looks wrong where tiles meet, once all rows were read.
@@ -20,21 +21,18 @@ pub(crate) type SeamWarnings = Arc<Mutex<Vec<String>>>;
 /// The tiles to the left and right are read beside it, and a row each of those above and below. None of them may change
 /// before the last row is given.
 pub(crate) struct HaloRows {
-    path: PathBuf,
-    read: ReadOptions,
+    files: TileFiles,
     halo: Halo,
-    /// The tiles around it, as they were found.
-    around: Vec<Watch>,
+    /// By what all tiles are reduced.
+    shrink: NonZeroU32,
     /// Ends the way to a row of a tile above.
     stop: Stop,
     size: Size,
     body: WideRows,
     /// The tile's own row that stands below its last one, if no other tile is there.
     below: Option<(usize, Samples)>,
-    /// The row of the tile above that may be the first one of the tile itself; near the end, its own last one.
-    border: Option<Samples>,
     /// Where it meets the tiles above and below.
-    seams: [Option<Seam>; 2],
+    seams: [Option<RowSeam>; 2],
     told: SeamWarnings,
     next_row: usize,
 }
@@ -44,7 +42,8 @@ impl HaloRows {
     /// looks wrong is `told` with the last row.
     ///
     /// # Errors
-    /// As [`open_heights`]; [`Error::File`] if another tile has another size or type, or shares too much with this one.
+    /// As [`open_heights`](super::open_heights); [`Error::File`] if another tile has another size or type;
+    /// [`Error::Parameter`] if tiles share too much, or no whole texels once they are reduced.
     pub fn new(
         path: &Path,
         rows: HeightRows,
@@ -53,39 +52,30 @@ impl HaloRows {
         stop: Stop,
         told: SeamWarnings,
     ) -> Result<Self> {
-        let (inner, height_type) = (rows.size(), rows.height_type());
-        let around = halo.tiles().into_iter().map(Watch::at).collect::<Result<_>>()?;
-        for tile in halo.tiles() {
-            check_alike(path, (inner, height_type), tile, &open_heights(tile, read)?.rows)?;
-        }
-        let overlap = halo.overlap().unwrap_or(0);
-        if overlap.saturating_add(2) > inner.width().min(inner.height()) {
-            let range = format!("at least 2 less than the sides of the tiles, which have {inner} texels");
-            return Err(Error::parameter("overlap", overlap, range));
-        }
+        let (inner, height_type, shrink) = (rows.size(), rows.height_type(), read.shrink);
+        let halo = halo.reduced(shrink)?;
+        let files = TileFiles::new(path, &rows, &halo.tiles(), read)?;
+        check_overlap(halo.overlap().unwrap_or(0), inner, shrink)?;
         let size = Size::new(inner.width() + 2, inner.height() + 2)?;
         let [over, own, under] = &halo.rows;
-        let body = WideRows::new(rows, &own.ends, halo.edges, read)?;
+        let body = WideRows::new(rows, &own.ends, halo.edges, &files)?;
         let stands_below = || {
             let row = halo.edges.y.resolve(inner.height() as isize, inner.height());
             (row, Samples::zeroed(height_type, size.width()))
         };
         let below = under.tile.tile().is_none().then(stands_below);
-        let seams = [over, under].map(|row| row.tile.seam());
-        let (path, read) = (path.into(), read.clone());
-        Ok(Self { path, read, halo, around, stop, size, body, below, border: None, seams, told, next_row: 0 })
+        let seams = [over, under].map(|row| row.tile.seam().map(RowSeam::new));
+        Ok(Self { files, halo, shrink, stop, size, body, below, seams, told, next_row: 0 })
     }
 
-    /// A row of the tile above or below, or of the tile itself in its place. Of another tile the row comes back that may
-    /// be the first or last one of the tile itself too.
-    fn read_rim(&self, above: bool, mut row: HeightsMut<'_>) -> Result<Option<Samples>> {
+    /// A row of the tile above or below, or of the tile itself in its place.
+    fn read_rim(&mut self, above: bool, mut row: HeightsMut<'_>) -> Result<()> {
         let (width, height) = (self.size.width(), self.size.height() - 2);
-        let [over, _, under] = &self.halo.rows;
-        let TileRow { tile, ends } = if above { over } else { under };
+        let TileRow { tile, ends } = &self.halo.rows[if above { 0 } else { 2 }];
         let place = tile.place(above, height, self.halo.edges.y);
         let shared_place = tile.shared(above, height).unwrap_or(place);
-        let path = tile.tile().unwrap_or(&self.path);
-        let mut rows = WideRows::new(open_heights(path, &self.read)?.rows, ends, self.halo.edges, &self.read)?;
+        let path = tile.tile().unwrap_or(self.files.own());
+        let mut rows = WideRows::new(self.files.open(path)?, ends, self.halo.edges, &self.files)?;
         let mut shared = Samples::zeroed(self.height_type(), width);
         let mut read = || {
             rows.skip(place.min(shared_place), &self.stop)?;
@@ -102,23 +92,21 @@ impl HaloRows {
         if shared_place == place {
             copy(row.as_ref(), &mut shared.as_mut());
         }
-        Ok(tile.overlap().map(|_| shared))
+        self.see(above, shared.as_ref());
+        Ok(())
     }
 
     /// A row of the tile itself.
     fn read_own(&mut self, mut row: HeightsMut<'_>) -> Result<()> {
-        let width = self.size.width();
-        self.body.read(part_mut(&mut row, 0..width))?;
+        self.body.read(part_mut(&mut row, 0..self.size.width()))?;
         if let Some((_, below)) = self.below.as_mut().filter(|(stands_below, _)| self.next_row == stands_below + 1) {
             copy(row.as_ref(), &mut below.as_mut());
         }
-        if let (1, [Some(seam), _], Some(above)) = (self.next_row, &mut self.seams, &self.border) {
-            seam.see(part(row.as_ref(), 1..width - 1), part(above.as_ref(), 1..width - 1));
+        if self.next_row == 1 {
+            self.see(true, row.as_ref());
         }
-        if self.next_row + 2 == self.size.height() && self.seams[1].is_some() {
-            let mut own = Samples::zeroed(self.height_type(), width);
-            copy(row.as_ref(), &mut own.as_mut());
-            self.border = Some(own);
+        if self.next_row + 2 == self.size.height() {
+            self.see(false, row.as_ref());
         }
         Ok(())
     }
@@ -129,19 +117,31 @@ impl HaloRows {
             copy(below.as_ref(), &mut row);
             return Ok(());
         }
+        self.read_rim(false, row)
+    }
+
+    /// Takes a row, of either tile, that may be in the tile above or below too.
+    fn see(&mut self, above: bool, row: Heights<'_>) {
         let inner = 1..self.size.width() - 1;
-        let below = self.read_rim(false, row)?;
-        if let ([_, Some(seam)], Some(own), Some(below)) = (&mut self.seams, &self.border, &below) {
-            seam.see(part(own.as_ref(), inner.clone()), part(below.as_ref(), inner));
+        self.seams[if above { 0 } else { 1 }].iter_mut().for_each(|seam| seam.take(part(row, inner.clone())));
+    }
+
+    fn read_row(&mut self, row: HeightsMut<'_>) -> Result<()> {
+        let last = self.size.height() - 1;
+        match self.next_row {
+            0 => self.read_rim(true, row)?,
+            next if next < last => self.read_own(row)?,
+            _ => self.read_last(row)?,
         }
-        Ok(())
+        self.next_row += 1;
+        if self.next_row > last { self.end() } else { Ok(()) }
     }
 
     /// Says what was seen where tiles meet; fails if one changed.
     fn end(&self) -> Result<()> {
-        let seams = self.seams.iter().flatten();
-        *self.told.lock().unwrap_or_else(PoisonError::into_inner) = warnings(seams.chain(self.body.seams()));
-        self.around.iter().try_for_each(Watch::check)
+        let seams = self.seams.iter().flatten().map(|rows| &rows.seam).chain(self.body.seams());
+        *self.told.lock().unwrap_or_else(PoisonError::into_inner) = warnings(seams, self.shrink);
+        self.files.check()
     }
 }
 
@@ -155,18 +155,12 @@ impl RowSource for HaloRows {
     }
 
     fn read(&mut self, mut rows: HeightsMut<'_>) -> Result<()> {
-        let (width, last) = (self.size.width(), self.size.height() - 1);
-        let count = len(&rows) / width;
-        for index in 0..count {
-            let row = part_mut(&mut rows, index * width..(index + 1) * width);
-            match self.next_row {
-                0 => self.border = self.read_rim(true, row)?,
-                next if next < last => self.read_own(row)?,
-                _ => self.read_last(row)?,
-            }
-            self.next_row += 1;
+        let width = self.size.width();
+        for index in 0..len(&rows) / width {
+            let read = self.read_row(part_mut(&mut rows, index * width..(index + 1) * width));
+            self.files.explain(read)?;
         }
-        if self.next_row > last { self.end() } else { Ok(()) }
+        Ok(())
     }
 
     /// Its first and last rows are there already: what lies beyond them is never asked for.
@@ -182,15 +176,16 @@ impl RowSource for HaloRows {
     }
 }
 
-/// Fails unless a tile has the size and type of the one at `path`.
-fn check_alike(path: &Path, own: (Size, HeightType), tile: &Path, rows: &HeightRows) -> Result<()> {
-    let found = (rows.size(), rows.height_type());
-    if found == own {
+/// Fails if tiles of this size, reduced by `shrink`, share all but a texel of a side.
+fn check_overlap(overlap: usize, tile: Size, shrink: NonZeroU32) -> Result<()> {
+    // Tiles that share nothing may be as narrow as a texel.
+    if overlap == 0 || overlap.saturating_add(2) <= tile.width().min(tile.height()) {
         return Ok(());
     }
-    let (name, ((size, height_type), (own_size, own_type))) = (path.display(), (found, own));
-    let reason = format!("it is {size} of {height_type}, and its neighbour {name} is {own_size} of {own_type}");
-    Err(Error::file(tile, reason, "tiles of one map have the same size and type: export them again"))
+    let by = shrink.get() as usize;
+    let file = Size::new(tile.width() * by, tile.height() * by)?;
+    let range = format!("at least {} less than the sides of the tiles, which have {file} texels", 2 * by);
+    Err(Error::parameter("overlap", overlap * by, range))
 }
 
 /// An error that does not say in which file it is, with the file.
@@ -208,6 +203,7 @@ pub(super) fn named(path: &Path) -> impl FnOnce(Error) -> Error + '_ {
 mod tests {
     use super::*;
     use crate::io::halo::Reach;
+    use crate::io::open_heights;
     use crate::map::{Edge, Edges};
     use crate::stream::Monitor;
     use std::fs::{self, File};
@@ -215,11 +211,17 @@ mod tests {
 
     const SIDE: usize = 4;
 
+    /// A square picture in grey.
+    fn tga(side: usize) -> Vec<u8> {
+        let header = [0, 0, 3, 0, 0, 0, 0, 0, 0, 0, 0, 0, side as u8, 0, side as u8, 0, 8, 0x20];
+        [&header[..], &vec![7; side * side]].concat()
+    }
+
     /// The rows of a tile between two others.
     fn rows(folder: &Path, stop: Stop) -> HaloRows {
-        let tiles = ["above.raw", "own.raw", "below.raw"].map(|name| folder.join(name));
-        tiles.iter().for_each(|tile| fs::write(tile, [7; SIDE * SIDE]).unwrap());
-        let read = ReadOptions { raw: Some(format!("{SIDE}x{SIDE}:u8").parse().unwrap()), ..ReadOptions::default() };
+        let tiles = ["above.tga", "own.tga", "below.tga"].map(|name| folder.join(name));
+        tiles.iter().for_each(|tile| fs::write(tile, tga(SIDE)).unwrap());
+        let read = ReadOptions::default();
         let [above, own, below] = tiles;
         let row = |tile| TileRow { tile, ends: Default::default() };
         let beside = |tile| row(Reach::Beside { tile, overlap: 0 });
@@ -231,13 +233,22 @@ mod tests {
     #[test]
     fn a_tile_that_changes_spoils_its_neighbours() {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["above.raw", "below.raw"] {
+        let touch = |tile: &Path| {
+            File::options().write(true).open(tile).unwrap().set_modified(SystemTime::UNIX_EPOCH).unwrap();
+        };
+        let enlarge = |tile: &Path| fs::write(tile, tga(SIDE + 3)).unwrap();
+        let spoil = |tile: &Path| fs::write(tile, "no picture").unwrap();
+        let remove = |tile: &Path| fs::remove_file(tile).unwrap();
+        let changes: [&dyn Fn(&Path); 4] = [&touch, &enlarge, &spoil, &remove];
+        // The tile above is opened for the first row, the one below for the last.
+        for (name, before, change) in changes.iter().flat_map(|change| {
+            [("above.tga", 0, change), ("above.tga", SIDE + 1, change), ("below.tga", SIDE + 1, change)]
+        }) {
             let mut rows = rows(folder.path(), Stop::default());
             let mut read = |count: usize| rows.read(HeightsMut::U8(&mut vec![0; count * (SIDE + 2)]));
-            read(SIDE + 1).unwrap();
-            let changed = File::options().write(true).open(folder.path().join(name)).unwrap();
-            changed.set_modified(SystemTime::UNIX_EPOCH).unwrap();
-            let error = read(1).unwrap_err().to_string();
+            read(before).unwrap();
+            change(&folder.path().join(name));
+            let error = read(SIDE + 2 - before).unwrap_err().to_string();
             assert!(error.contains(&format!("{name}: it changed or went while it was read")), "{error}");
         }
     }

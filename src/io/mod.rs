@@ -2,7 +2,8 @@
 //!
 //! A file's rows pass three steps, one module each: a decoder gives interleaved samples (`samples`), `channel`
 //! picks the height of each texel or `normal` its components, and `srgb` undoes a wrong colour space of heights and
-//! `shrink` reduces them where that was asked for. Decoders hold a row, a strip or a block at a time where the format allows it.
+//! `shrink` reduces them where that was asked for. Decoders hold a row, a strip or a block at a time where the format
+//! allows it.
 //!
 //! Nothing is lost: writers go through `replace`, so that a name stands for the old file or for the complete new one at
 //! any moment, whatever ends the process; after a loss of power too, since bytes are on the disk before they get a name.
@@ -45,6 +46,8 @@ mod sync_ahead;
 mod temporary;
 mod texture;
 mod tiff;
+#[cfg(feature = "cli")]
+mod tile_files;
 #[cfg(feature = "cli")]
 mod wide_rows;
 mod write;

@@ -1,6 +1,8 @@
 //! Where a tile meets one beside it: whether both have the texels there that they should share.
 
+use super::samples::Samples;
 use crate::map::Heights;
+use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
 /// Texels of a side of a tile, beside those of another tile that are the same if the tiles share as many as they
@@ -45,15 +47,44 @@ impl Seam {
     }
 }
 
-/// What looks wrong where a tile meets others.
-pub(super) fn warnings<'a>(seams: impl Iterator<Item = &'a Seam> + Clone) -> Vec<String> {
+/// Where a tile meets the one above or below it, of which a row each is seen one after the other.
+#[derive(Debug)]
+pub(super) struct RowSeam {
+    pub seam: Seam,
+    /// The row that was seen first.
+    first: Option<Samples>,
+}
+
+impl RowSeam {
+    pub fn new(seam: Seam) -> Self {
+        Self { seam, first: None }
+    }
+
+    /// Takes the row of either tile; with the second one both are looked at.
+    pub fn take(&mut self, row: Heights<'_>) {
+        match self.first.take() {
+            Some(first) => self.seam.see(first.as_ref(), row),
+            None => {
+                self.first = Some(match row {
+                    Heights::U8(row) => Samples::U8(row.to_vec()),
+                    Heights::U16(row) => Samples::U16(row.to_vec()),
+                    Heights::F32(row) => Samples::F32(row.to_vec()),
+                });
+            }
+        }
+    }
+}
+
+/// What looks wrong where a tile meets others; all are reduced by a factor.
+pub(super) fn warnings<'a>(seams: impl Iterator<Item = &'a Seam> + Clone, by: NonZeroU32) -> Vec<String> {
     let list = |parts: Vec<String>| (!parts.is_empty()).then(|| parts.join(", "));
     let differing = seams.clone().filter(|seam| seam.overlap > 0 && seam.differing > 0);
     let counts = differing.clone().map(|seam| format!("{} of {} with {}", seam.differing, seam.texels, seam.name()));
     let wrong = list(counts.collect()).zip(differing.map(|seam| seam.overlap).max()).map(|(counts, overlap)| {
         format!(
             "of the texels that it should share with the tiles beside it, these differ: {counts}: \
-             is --overlap {overlap} right?"
+             is --overlap {} right?",
+            overlap * by.get() as usize
         )
     });
     // The sea on both sides of a border says nothing.
@@ -61,7 +92,7 @@ pub(super) fn warnings<'a>(seams: impl Iterator<Item = &'a Seam> + Clone) -> Vec
     let shared = list(same.collect()).map(|tiles| {
         format!(
             "its border is the same, texel by texel, as that of {tiles}: \
-             tiles that share their borders take --overlap 1"
+             tiles that share their borders take --overlap {by}"
         )
     });
     wrong.into_iter().chain(shared).collect()

@@ -1,11 +1,10 @@
 //! The rows of a tile, a texel longer on either side.
 
-use super::ReadOptions;
 use super::halo::Reach;
 use super::halo_rows::named;
-use super::open_heights;
 use super::samples::{Samples, copy, part, part_mut};
 use super::seam::Seam;
+use super::tile_files::TileFiles;
 use crate::error::Result;
 use crate::map::{Edges, HeightsMut};
 use crate::stream::{HeightRows, Stop, piece_rows};
@@ -34,13 +33,13 @@ struct Beside {
 }
 
 impl WideRows {
-    /// `rows` are those of a tile; others are opened.
-    pub fn new(rows: HeightRows, ends: &[Reach; 2], edges: Edges, read: &ReadOptions) -> Result<Self> {
+    /// `rows` are those of one of `files`; others are opened.
+    pub fn new(rows: HeightRows, ends: &[Reach; 2], edges: Edges, files: &TileFiles) -> Result<Self> {
         let width = rows.size().width();
         let [left, right] = ends;
         let ends = [
-            End { beside: Beside::open(left, &rows, true, read)?, column: left.place(true, width, edges.x) },
-            End { beside: Beside::open(right, &rows, false, read)?, column: right.place(false, width, edges.x) },
+            End { beside: Beside::open(left, &rows, true, files)?, column: left.place(true, width, edges.x) },
+            End { beside: Beside::open(right, &rows, false, files)?, column: right.place(false, width, edges.x) },
         ];
         Ok(Self { rows, ends })
     }
@@ -90,12 +89,12 @@ impl WideRows {
 
 impl Beside {
     /// The tile beyond an end of `rows`, if another one is there.
-    fn open(reach: &Reach, rows: &HeightRows, is_first: bool, read: &ReadOptions) -> Result<Option<Self>> {
+    fn open(reach: &Reach, rows: &HeightRows, is_first: bool, files: &TileFiles) -> Result<Option<Self>> {
         let Some(path) = reach.tile() else { return Ok(None) };
         let width = rows.size().width();
         let seam = reach.shared(is_first, width).zip(reach.seam());
         let row = Samples::zeroed(rows.height_type(), width);
-        Ok(Some(Self { path: Path::to_owned(path), rows: open_heights(path, read)?.rows, row, seam }))
+        Ok(Some(Self { path: Path::to_owned(path), rows: files.open(path)?, row, seam }))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Tiles of a larger map by the command line and `texbake.toml`: which files they are, and what looks wrong with them.
 
-use super::support::{Folder, bumps16, read_png};
+use super::support::{Folder, Run, bumps16, read_png};
 use serde_json::json;
 use texbake::{Baker, CodesRef, Edge, Edges, Grid, HeightMap, NormalOptions};
 
@@ -94,17 +94,85 @@ fn a_wrong_name_stops_no_other_file() {
     let run = folder.run(&[&files[..], &["--neighbours", TEMPLATE, "--report", "r.json"]].concat()).ends(1);
     let reason = format!("dem/own_height.png: its name is not {TEMPLATE} with numbers for {{x}} and {{y}}");
     run.says("error: ", &[&reason]);
-    assert!(run.stdout.contains("1 of 1 files baked, 1 error; "), "{}", run.stdout);
+    assert!(run.stdout.contains("1 of 2 files baked, 1 failed; "), "{}", run.stdout);
     assert_is_middle(&folder, "out/tile_1_1_normal.png", 0);
     assert_eq!(folder.files("out"), ["tile_1_1_normal.png"]);
-    let errors = folder.json("r.json")["errors"].clone();
-    assert!(errors.as_array().unwrap().len() == 1 && errors[0].as_str().unwrap().starts_with(&reason), "{errors}");
+    let report = folder.json("r.json");
+    let [_, refused] = &report["files"].as_array().unwrap()[..] else { panic!("not two files: {report}") };
+    assert_eq!([&refused["input"], &refused["result"]], ["dem/own_height.png", "failed"]);
+    assert!(refused["error"].as_str().unwrap().starts_with(&reason), "{refused}");
+    assert_eq!([&report["errors"], &refused["options"]], [&json!([]), &json!(null)]);
+    let totals = ["files", "baked", "failed"].map(|count| report["totals"][count].clone());
+    assert_eq!(totals, [2, 1, 1].map(|count| json!(count)));
+    // What would be done says so too.
+    let run = folder.run(&[&files[..], &["--neighbours", TEMPLATE, "--dry-run"]].concat()).ends(1);
+    assert!(run.stdout.contains(&format!("fail dem/own_height.png: {reason}")), "{}", run.stdout);
+    assert!(run.stdout.ends_with("0 of 2 files would be baked, 1 fresh, 1 would fail\n"), "{}", run.stdout);
+}
 
-    // One of two files for a place is wrong, and told once.
-    tile(&folder, "dem/tile_01_1.png", [1, 1], 0);
-    let run = folder.run(&bake("twice", &["--neighbours", TEMPLATE])).ends(1);
-    run.says("error: ", &["it is the same tile as dem/tile_", "column 1, row 1; move one of them away"]);
-    assert_eq!(folder.files("twice"), ["own_normal.png"]);
+#[test]
+fn a_tile_that_is_there_twice_stops_those_beside_it_alone() {
+    let folder = Folder::new();
+    tiles(&folder, 0);
+    tile(&folder, "dem/tile_00_0.png", [0, 0], 0);
+    // A folder is no tile, whatever it is called.
+    folder.file("dem/tile_02_2.png/notes.txt", "notes");
+    let run = folder.run(&bake("out", &["--neighbours", TEMPLATE, "--report", "r.json"])).ends(1);
+    run.says("error: ", &["dem/tile_0_0.png: it is the same tile as dem/tile_00_0.png: column 0, row 0; move one"]);
+    assert_eq!(folder.json("r.json")["totals"]["failed"], 4);
+    let baked = |names: &[&str]| names.iter().map(|name| format!("tile_{name}_normal.png")).collect::<Vec<_>>();
+    assert_eq!(folder.files("out"), baked(&["0_2", "1_1", "1_2", "2_0", "2_1", "2_2"]));
+    assert_is_middle(&folder, "out/tile_1_1_normal.png", 0);
+    // Sobel's stencil looks at corners too.
+    folder.run(&bake("sobel", &["--neighbours", TEMPLATE, "--filter", "sobel"])).ends(1);
+    assert_eq!(folder.files("sobel"), baked(&["0_2", "1_2", "2_0", "2_1", "2_2"]));
+}
+
+#[test]
+fn reduced_tiles_share_whole_texels() {
+    let folder = Folder::new();
+    tiles(&folder, 2);
+    let shrunk = |overlap, shrink| {
+        folder.run(&bake("out", &["--neighbours", TEMPLATE, "--shrink", shrink, "--overlap", overlap, "--force"]))
+    };
+    for wrong in ["1", "2", "3"] {
+        let told = format!("--overlap is {wrong}: it must be a multiple of shrink, which is 4");
+        shrunk(wrong, "4").ends(2).says("error: ", &[&told]);
+    }
+    assert_eq!(folder.files("out"), [""; 0]);
+    assert_eq!(warnings(&shrunk("2", "2").ends(0).stderr), [""; 0]);
+    // What is wrong is told in texels of the files.
+    let said = |run: Run, words: &str| {
+        let told: Vec<String> = warnings(&run.stderr).into_iter().map(str::to_owned).collect();
+        assert!(told.len() == 9 && told.iter().all(|line| line.ends_with(words)), "{told:?}");
+    };
+    said(shrunk("4", "2").ends(0), "is --overlap 4 right?");
+    said(shrunk("0", "2").ends(0), "tiles that share their borders take --overlap 2");
+    shrunk("6", "2")
+        .ends(1)
+        .says("dem/tile_1_1.png: overlap is 6: ", &["at least 4 less than the sides", "8 x 8 texels"]);
+}
+
+#[test]
+fn tiles_may_be_a_texel_wide_or_high() {
+    for [width, height] in [[1, 1], [1, 5], [5, 1]] {
+        let folder = Folder::new();
+        for (x, y) in places() {
+            let code = |column, row| bumps16(x * width + column, y * height + row);
+            folder.grey16(&format!("dem/tile_{x}_{y}.png"), width, height, code);
+        }
+        let whole: HeightMap = Grid::from_fn(3 * width, 3 * height, bumps16).unwrap().into();
+        let options = NormalOptions { edges: Edges::both(Edge::Clamp), ..NormalOptions::default() };
+        let expected = Baker::reference().normal(&whole, &options).unwrap();
+        let CodesRef::U8(expected) = expected.codes() else { unreachable!("8 bits are the default") };
+        folder.run(&bake("out", &["--neighbours", TEMPLATE])).ends(0);
+        for (x, y) in places() {
+            let rows = (0..height).map(|row| ((y * height + row) * 3 + x) * width);
+            let cut: Vec<u8> = rows.flat_map(|first| expected[3 * first..][..3 * width].to_vec()).collect();
+            let (_, _, codes) = read_png(&folder.path(&format!("out/tile_{x}_{y}_normal.png")));
+            assert!(codes.as_ref() == CodesRef::U8(&cut), "tile {x}, {y} of {width} x {height}");
+        }
+    }
 }
 
 #[test]
@@ -234,9 +302,16 @@ fn a_tile_that_is_missing_between_others_is_told_once() {
     // A corner that the map does not have is none; zeros stand in front as in the other names.
     std::fs::remove_file(folder.path("dem/tile_2_2.png")).unwrap();
     assert_eq!(bake(&[]).0, [""; 0]);
-    for name in ["007_-01", "009_-01"] {
-        folder.grey16(&format!("padded/{name}.png"), SIDE, SIDE, bumps16);
+    // One warning for a hole, whichever tile beside it is asked.
+    for (names, missing) in [
+        (["007_-01", "009_-01"], "008_-01"),
+        (["08_0", "10_0"], "09_0"),
+        (["0_-04", "0_-06"], "0_-05"),
+        (["9_3", "11_3"], "10_3"),
+    ] {
+        let folder = Folder::new();
+        names.iter().for_each(|name| _ = folder.grey16(&format!("dem/{name}.png"), SIDE, SIDE, bumps16));
+        let run = folder.run(&["bake", "dem", "--out", "p", "--neighbours", "{x}_{y}.png", "--edge", "clamp"]).ends(0);
+        assert_eq!(warnings(&run.stderr), [hole.replace("tile_1_1", missing)]);
     }
-    let run = folder.run(&["bake", "padded", "--out", "p", "--neighbours", "{x}_{y}.png", "--edge", "clamp"]).ends(0);
-    assert_eq!(warnings(&run.stderr), [hole.replace("dem/tile_1_1", "padded/008_-01")]);
 }

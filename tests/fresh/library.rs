@@ -52,6 +52,32 @@ fn a_given_normal_map_is_an_input() {
 }
 
 #[test]
+fn maps_of_two_runs_are_no_maps_of_one() {
+    let folder = textures();
+    let both = BakeOptions { parallax: Some(ParallaxFormat::default()), ..BakeOptions::default() };
+    let output = |name: &str| folder.path(&format!("out/{name}.tif"));
+    let job = |normal: &str, parallax: &str| Job {
+        input: folder.path("tex/a_height.png"),
+        outputs: Maps { normal: Some(output(normal)), parallax: Some(output(parallax)), roughness: None },
+        normals: None,
+        neighbours: None,
+        read: ReadOptions::default(),
+        options: both,
+        write: WriteOptions::default(),
+        baker: Arc::new(Baker::reference()),
+    };
+    let (out, monitor) = (folder.path("out"), Monitor::default());
+    for jobs in [[job("n", "other_p")], [job("other_n", "p")]] {
+        FreshPlan::new(&jobs, &out, false, &monitor).run(1, &monitor, &|_| ());
+        assert_eq!(reasons(&jobs, &out), [Freshness::Fresh]);
+    }
+    let found = reasons(&[job("n", "p")], &out);
+    assert_eq!(found, [Freshness::Stale(Reason::Apart(output("p"), output("n")))]);
+    let told = format!("{} was baked apart from {}", output("p").display(), output("n").display());
+    assert_eq!(found[0].to_string(), told);
+}
+
+#[test]
 fn events_and_outcomes_have_the_places_of_all_jobs() {
     let folder = textures();
     let job = |name: &str| Job {

@@ -201,6 +201,35 @@ fn a_tile_that_is_saved_is_baked_with_those_beside_it() {
     assert_eq!(watch.interrupted(), Some(130));
 }
 
+/// What tiles end in is up to their template, of the command line or of the settings.
+#[test]
+fn tiles_without_a_picture_s_name_are_seen() {
+    let template = "t_{x}_{y}.hgt";
+    for in_settings in [false, true] {
+        let folder = Folder::new();
+        let tile = |x: usize, code: u8| folder.file(&format!("tex/t_{x}_0.hgt"), [[code; 16], [code / 2; 16]].concat());
+        [1, 9].into_iter().enumerate().for_each(|(x, code)| _ = tile(x, code));
+        let mut arguments = vec!["--out", "out", "--raw", "8x4:u8", "--edge", "clamp"];
+        match in_settings {
+            true => _ = folder.file("tex/texbake.toml", format!("[defaults]\nneighbours = '{template}'\n")),
+            false => arguments.extend(["--neighbours", template]),
+        }
+        let mut watch = Watch::spawn(&folder, &arguments);
+        watch.until_said("watching for changes", 1);
+        let output = |x: usize| folder.path(&format!("out/t_{x}_0_normal.png"));
+        let alone = fs::read(output(1)).unwrap();
+        // One appears, and goes: the one beside it is baked again.
+        tile(2, 200);
+        watch.until(|| output(2).exists() && fs::read(output(1)).unwrap() != alone);
+        fs::remove_file(folder.path("tex/t_2_0.hgt")).unwrap();
+        watch.until_baked("out/t_1_0_normal.png", &alone);
+        // It comes back.
+        tile(2, 100);
+        watch.until(|| fs::read(output(1)).unwrap() != alone);
+        assert_eq!(watch.interrupted(), Some(130));
+    }
+}
+
 #[test]
 fn wrong_arguments_and_settings_end_it_at_once() {
     let folder = Folder::new();

@@ -11,7 +11,7 @@ use texbake::io::{NormalReadOptions, ReadOptions, WriteOptions, default_format, 
 use texbake::stream::Monitor;
 use texbake::{
     BakeOptions, Baker, CodesRef, Edge, Edges, Encoding, Filter, Grid, HeightMap, HeightType, Heights, Maps,
-    NormalFormat, NormalMap, ParallaxFormat, Rational, Scale,
+    NormalFormat, NormalMap, ParallaxFormat, Rational, RoughnessOptions, Scale,
 };
 
 /// Tiles beside each other, and below each other.
@@ -216,31 +216,58 @@ fn tiles_are_reduced_before_they_are_put_beside_each_other() {
     let error = outcome.result.as_ref().unwrap_err().to_string();
     assert!(error.starts_with("shrink is 19: it must be a divisor of both sides"), "{error}");
 
-    let folder = tempfile::tempdir().unwrap();
     let (whole, options) = (&mosaic.whole, normal_only());
-    let names = [0, 1].map(|x| folder.path().join(format!("{x}_0.png")));
-    let tiles = [0, 1].map(|x| cut(whole, [24 * x, 0], [24, 20]));
-    names.iter().zip(&tiles).for_each(|(name, tile)| Kind::Png.write(name, tile));
     let read = ReadOptions { shrink: NonZeroU32::new(4).unwrap(), ..Default::default() };
     let template = "{x}_{y}.png".parse().unwrap();
-    for (x, name) in names.iter().enumerate() {
-        let neighbours = TileFolders::default().around(name, &template, 0, &options).unwrap();
-        let (input, normal) = (name.clone(), folder.path().join(format!("n_{x}.png")));
-        let job = Job {
-            input,
-            outputs: Maps { normal: Some(normal.clone()), parallax: None, roughness: None },
-            neighbours: Some(neighbours),
-            read: read.clone(),
-            ..mosaic.job([0, 0], &options, &read, "png")
-        };
-        run(&[job], 1, &Monitor::default(), &|_| ()).remove(0).result.unwrap();
+    for overlap in [0, 4, 8] {
+        let folder = tempfile::tempdir().unwrap();
+        let (names, step) = ([0, 1].map(|x| folder.path().join(format!("{x}_0.png"))), 24 - overlap);
+        let tiles = [0, 1].map(|x| cut(whole, [step * x, 0], [24, 20]));
+        names.iter().zip(&tiles).for_each(|(name, tile)| Kind::Png.write(name, tile));
         let strip = folder.path().join("both.png");
-        Kind::Png.write(&strip, &cut(whole, [0, 0], [48, 20]));
+        Kind::Png.write(&strip, &cut(whole, [0, 0], [step + 24, 20]));
         let (reduced, _) = HeightMap::read_with(&strip, &read).unwrap();
-        let options = BakeOptions { scale: scale("3"), ..options };
-        let expected = Baker::cpu().bake(&reduced, &options).unwrap().normal.unwrap();
-        let expected = cut_codes(expected.codes(), [12, 5], [6 * x, 0], [6, 5]);
-        assert!(normals(&normal, Encoding::Unorm).codes().bytes() == expected, "tile {x}");
+        let expected = BakeOptions { scale: scale("3"), ..options };
+        let expected = Baker::cpu().bake(&reduced, &expected).unwrap().normal.unwrap();
+        for (x, name) in names.iter().enumerate() {
+            let around = |shared| TileFolders::default().around(name, &template, shared, &options).unwrap();
+            let (input, normal) = (name.clone(), folder.path().join(format!("n_{x}.png")));
+            let job = |shared| Job {
+                input: input.clone(),
+                outputs: Maps { normal: Some(normal.clone()), parallax: None, roughness: None },
+                neighbours: Some(around(shared)),
+                read: read.clone(),
+                ..mosaic.job([0, 0], &options, &read, "png")
+            };
+            let outcome = run(&[job(overlap)], 1, &Monitor::default(), &|_| ()).remove(0);
+            outcome.result.unwrap();
+            assert_eq!(outcome.warnings, [""; 0], "overlap {overlap}");
+            let expected = cut_codes(expected.codes(), [(step + 24) / 4, 5], [step / 4 * x, 0], [6, 5]);
+            assert!(normals(&normal, Encoding::Unorm).codes().bytes() == expected, "tile {x}, overlap {overlap}");
+
+            let parts = run(&[job(overlap + 2)], 1, &Monitor::default(), &|_| ()).remove(0);
+            let told = format!("overlap is {}: it must be a multiple of shrink, which is 4", overlap + 2);
+            assert!(parts.result.unwrap_err().to_string().starts_with(&told), "{told}");
+        }
+    }
+}
+
+#[test]
+fn levels_and_other_edges_are_not_for_tiles() {
+    let mosaic = Mosaic::new(HeightType::U8, Kind::Png, 0);
+    let (read, options, write) = (mosaic.read(), normal_only(), WriteOptions::default());
+    let neighbours = mosaic.job([1, 0], &options, &read, "png").neighbours.unwrap();
+    let check = |options: &BakeOptions, write: &WriteOptions| neighbours.check(&read, options, write);
+    check(&options, &write).unwrap();
+    let clamped = BakeOptions { edges: Edges::both(Edge::Clamp), ..options };
+    let rough = BakeOptions { roughness: Some(RoughnessOptions::default()), ..options };
+    for (wrong, told) in [
+        (check(&options, &WriteOptions { mips: true, ..write }), "mips is on: it must be left out"),
+        (check(&rough, &write), "roughness is on: it must be left out"),
+        (check(&clamped, &write), "edge is clamp: it must be wrap, as for its neighbours"),
+    ] {
+        let error = wrong.unwrap_err().to_string();
+        assert!(error.starts_with(told), "{error}");
     }
 }
 

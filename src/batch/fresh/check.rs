@@ -28,7 +28,7 @@ pub(super) fn check(job: &Job, record: &Record, reader: Reader<'_>) -> Result<De
     }
     // Maps of one bake have one line.
     if let Some(other) = lines.iter().position(|line| !Arc::ptr_eq(line, &lines[0])) {
-        return Err(Reason::Unknown(outputs[other].into()));
+        return Err(Reason::Apart(outputs[other].into(), outputs[0].into()));
     }
     let line = lines.into_iter().next().ok_or(Reason::New)?;
     if line.inputs.len() != inputs.len() {

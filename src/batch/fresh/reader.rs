@@ -8,8 +8,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// What was read of files that had been left alone: it is theirs as long as their state says so. A tile is an input of
-/// itself and of those around it.
+/// What was read of files that nobody was writing to. It is what a file holds for as long as its state stays the same.
+/// A tile, which is an input of itself and of those around it, is so read once.
 #[derive(Debug, Default)]
 pub(super) struct Seen(Mutex<HashMap<PathBuf, Content>>);
 

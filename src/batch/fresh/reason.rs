@@ -24,6 +24,8 @@ pub enum Reason {
     New,
     /// This output is there, and nothing says how it was baked.
     Unknown(PathBuf),
+    /// This output was baked, but not with that one: maps of one height map are baked in one pass.
+    Apart(PathBuf, PathBuf),
     /// This output was baked, and is not there any more.
     Missing(PathBuf),
     /// This output is not what was baked.
@@ -90,6 +92,7 @@ impl fmt::Display for Reason {
             Self::Forced => f.write_str("forced"),
             Self::New => f.write_str("new"),
             Self::Unknown(output) => write!(f, "{} is there, and not in the record", output.display()),
+            Self::Apart(output, other) => write!(f, "{} was baked apart from {}", output.display(), other.display()),
             Self::Missing(output) => write!(f, "{} is missing", output.display()),
             Self::Edited(output) => write!(f, "{} was edited", output.display()),
             Self::Input(input) => write!(f, "{} changed", input.display()),

@@ -6,7 +6,7 @@ use super::line::{BakedLine, Line, Output};
 use super::plan::{Decision, FreshPlan};
 use super::reader::Reader;
 use super::written::Written;
-use crate::batch::job::{Queued, run_queue};
+use crate::batch::queue::{Queued, run_queue};
 use crate::batch::{Event, Files, Job, Outcome};
 use crate::error::Error;
 use crate::stream::Monitor;

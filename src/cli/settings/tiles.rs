@@ -11,13 +11,12 @@ use texbake::{BakeOptions, Error, Result};
 pub struct Tiles {
     /// The height map is a tile of a larger map, and has such a name: tiles_{x}_{y}.png, where {x} counts the tiles to
     /// the right and {y} down the rows. Its borders continue in the tiles beside it in its folder, so that no seams are
-    /// seen; --edge is for the borders of the whole map, and for those at a tile that is missing between others, which
-    /// is told
+    /// seen; --edge holds at the border of the whole map, and beside a tile that is missing (a warning names it)
     #[arg(long, value_name = "TEMPLATE", value_parser = value::<TileTemplate>, help_heading = HEADING)]
     pub neighbours: Option<TileTemplate>,
 
-    /// Texels that tiles beside each other share: 1 for tiles of 1025 that cover 1024. A warning says where those next
-    /// to a border are not the same in both tiles; or are the same although none are shared [default: 0]
+    /// Texels of the files that tiles beside each other share: 1 for tiles of 1025 that cover 1024. Warns if shared
+    /// texels differ between two tiles, or if their borders are the same although --overlap is 0 [default: 0]
     #[arg(long, value_name = "TEXELS", help_heading = HEADING)]
     pub overlap: Option<usize>,
 }
