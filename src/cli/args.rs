@@ -520,7 +520,7 @@ pub enum Method {
 /// What is said about a run.
 #[derive(Args, Debug)]
 pub struct Reporting {
-    /// Write what was done, file by file, as JSON
+    /// Write what was done, file by file, as JSON; after a mistake in the command line itself an older one stays
     #[arg(long, value_name = "FILE", help_heading = "Reporting")]
     pub report: Option<PathBuf>,
 

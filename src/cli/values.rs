@@ -130,6 +130,11 @@ pub fn count(text: &str) -> Result<NonZeroUsize, String> {
 /// More than any machine has cores.
 const MOST: usize = 65535;
 
+/// A number of texels.
+pub fn texels(text: &str) -> Result<usize, String> {
+    text.parse().map_err(|_| "it must be a whole number of texels".into())
+}
+
 /// Steps of a shader through a parallax map.
 pub fn iterations(text: &str) -> Result<NonZeroU32, String> {
     let steps = text.parse().ok().filter(|steps: &NonZeroU32| steps.get() <= 1000);

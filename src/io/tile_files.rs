@@ -48,7 +48,11 @@ impl TileFiles {
         let Self { own, size: own_size, height_type: own_type, .. } = self;
         let name = own.display();
         let reason = format!("it is {size} of {height_type}, and its neighbour {name} is {own_size} of {own_type}");
-        Err(Error::file(tile, reason, "tiles of one map have the same size and type: export them again"))
+        Err(Error::file(
+            tile,
+            reason,
+            "tiles of one map have the same size and type: export them again, or pad smaller ones",
+        ))
     }
 
     /// Fails if one of them changed or went.

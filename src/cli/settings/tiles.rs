@@ -1,6 +1,6 @@
 //! What lies around a tile of a larger map.
 
-use crate::cli::values::value;
+use crate::cli::values::{texels, value};
 use clap::Args;
 use std::path::Path;
 use texbake::batch::{Found, Neighbours, TileFolders, TileTemplate};
@@ -17,7 +17,7 @@ pub struct Tiles {
 
     /// Texels of the files that tiles beside each other share: 1 for tiles of 1025 that cover 1024. Warns if shared
     /// texels differ between two tiles, or if their borders are the same although --overlap is 0 [default: 0]
-    #[arg(long, value_name = "TEXELS", help_heading = HEADING)]
+    #[arg(long, value_name = "TEXELS", value_parser = texels, allow_hyphen_values = true, help_heading = HEADING)]
     pub overlap: Option<usize>,
 }
 
