@@ -21,7 +21,7 @@ impl Baker {
     /// use texbake::{Baker, CodesRef, Edge, Edges, Grid, HeightMap, NormalOptions, Scale};
     ///
     /// // One side of a ridge is twice as steep as the other, and half as long.
-    /// let ridge = HeightMap::from(Grid::from_fn(6, 1, |x, _| [0, 51, 102, 153, 204, 102][x])?);
+    /// let ridge = HeightMap::from(Grid::from_fn(6, 1, |x, _| [0_u8, 51, 102, 153, 204, 102][x])?);
     /// let options = NormalOptions { scale: Scale::texels(5), ..Default::default() };
     /// let levels = Baker::cpu().normal_levels(&ridge, &options)?;
     /// let sizes: Vec<String> = levels.iter().map(|level| level.size().to_string()).collect();

@@ -81,10 +81,11 @@ fn ktx_parse_reads_what_was_written() {
     for (found, made) in read_ktx2(&readers, &paths(&all)).iter().zip(&all) {
         assert!(ktx_parse_agrees(found, made), "{}", made.path.display());
     }
-    // The comparison is awake: sRGB in the header, in the descriptor, and a level that stands elsewhere.
+    // The comparison is awake: sRGB in the header, in the descriptor, and a level, not the last in the file, that stands
+    // elsewhere.
     let made = &Made::new(&folder, KINDS[2], (17, 9), true, "ktx2");
-    let dfd_at = 80 + 24 * made.levels.len();
-    for (at, value) in [(12, 43), (dfd_at + 4 + 8 + 2, 2), (80, made.bytes()[80] ^ 4)] {
+    let (dfd_at, level_1_at) = (80 + 24 * made.levels.len(), 80 + 24);
+    for (at, value) in [(12, 43), (dfd_at + 4 + 8 + 2, 2), (level_1_at, made.bytes()[level_1_at] ^ 4)] {
         let mut changed = made.bytes();
         changed[at] = value;
         let path = folder.file("changed.ktx2", &changed);
