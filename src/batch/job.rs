@@ -75,8 +75,8 @@ impl Job {
         })
     }
 
-    fn bake(&self, run: Run<'_>) -> Result<Baked> {
-        let Run { create, monitor, opened, warnings } = run;
+    fn bake(&self, mut run: Run<'_>) -> Result<Baked> {
+        let opened = run.opened;
         let heights = HeightWatch::new(&self.input, &self.read);
         let open = || {
             let rows = heights.open(self.options.parallax.is_some())?;
@@ -85,14 +85,11 @@ impl Job {
         };
         let options = BakeOptions { scale: self.scale()?, ..self.options };
         let baked = match &self.neighbours {
-            None => self.baker.bake_rows(&open, create, &options, monitor),
-            Some(neighbours) => {
-                let run = Run { create, monitor, opened, warnings };
-                self.bake_tile(neighbours, &open, &options, run)
-            }
+            None => self.baker.bake_rows(&open, run.create, &options, run.monitor),
+            Some(neighbours) => self.bake_tile(neighbours, &open, &options, &mut run),
         };
-        warnings.extend(heights.warnings(baked.is_ok()));
-        warnings.extend(baked.as_ref().ok().and_then(inexact_scale));
+        run.warnings.extend(heights.warnings(baked.is_ok()));
+        run.warnings.extend(baked.as_ref().ok().and_then(inexact_scale));
         baked
     }
 

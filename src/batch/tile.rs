@@ -18,7 +18,7 @@ impl Job {
         neighbours: &Neighbours,
         open: &dyn Fn() -> Result<HeightRows>,
         options: &BakeOptions,
-        run: Run<'_>,
+        run: &mut Run<'_>,
     ) -> Result<Baked> {
         let Run { create, monitor, warnings, .. } = run;
         neighbours.check(&self.read, options, &self.write)?;
